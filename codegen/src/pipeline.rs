@@ -100,15 +100,22 @@ fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
     let inverter = &spec.inverter;
     let first = inverter.sensors()[0];
     let has_gain = |sensor: &CurrentSensor| sensor.gain.abs() == first.gain.abs();
-    let asked = [
-        ("sensed_phases", inverter.sensed_phases == SensedPhases::Abc),
-        ("adc_gain", !inverter.other_sensors.iter().all(has_gain)),
-        ("pwm_per_control", inverter.pwm_per_control > 1),
-    ];
     let mut errors = Collector::new();
-    for (name, _) in asked.iter().filter(|(_, is_asked)| *is_asked) {
-        let at = origins.at(&format!("inverter.{name}"));
-        errors.push(catalogue::option_planned(at, name));
+    if inverter.sensed_phases == SensedPhases::Abc {
+        errors.push(catalogue::three_sensors(
+            origins.at("inverter.sensed_phases"),
+        ));
+    }
+    if !inverter.other_sensors.iter().all(has_gain) {
+        let gains: Vec<String> = inverter
+            .sensors()
+            .iter()
+            .map(|sensor| engineering(sensor.gain.abs(), "A"))
+            .collect();
+        errors.push(catalogue::unlike_gains(
+            origins.at("inverter.adc_gain"),
+            &gains.join(", "),
+        ));
     }
     if spec.controller.common_mode().is_none() {
         let held = [

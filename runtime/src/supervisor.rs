@@ -155,11 +155,11 @@ impl SensedPhases {
 
     /// Currents of phases a and b, from the sensed ones and that of the third phase.
     #[inline]
-    fn a_and_b(self, [first, second]: [Word; 2], third: impl FnOnce() -> Word) -> [Word; 2] {
+    fn a_and_b(self, [first, second]: [Word; 2], third: Word) -> [Word; 2] {
         match self {
             Self::Ab => [first, second],
-            Self::Bc => [third(), first],
-            Self::Ca => [second, third()],
+            Self::Bc => [third, first],
+            Self::Ca => [second, third],
         }
     }
 }
@@ -416,7 +416,7 @@ impl Supervisor {
             && !limits.is_over(i)
             && !stalled;
         is_fit.then(|| Checked {
-            i: sensors.phases.a_and_b(i, || third_of(i)),
+            i: sensors.phases.a_and_b(i, third_of(i)),
             hall: sample.hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         })
@@ -462,7 +462,7 @@ impl Supervisor {
         let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
         let i = limits.sensed(sensors, counts, self.offsets);
         let [least, most] = limits.currents;
-        let third = || third_of(i).min(most).max(least);
+        let third = third_of(i).min(most).max(least);
         let has_code = is_hall_code(sample.hall);
         let checked = Checked {
             i: sensors.phases.a_and_b(i, third),

@@ -1,4 +1,4 @@
-//! Drives whose current sensors are not two alike of phases a and b.
+//! Drives whose current sensors are not two alike of phases a and b, or read less often than the PWM's period.
 
 /// The paper's motor, with fields of its inverter to come.
 const MOTOR: &str = r#"[motor]
@@ -44,6 +44,13 @@ const CONTROLLERS: [&str; 5] = [
     "kind = \"pi-pwm\"",
 ];
 
+/// Controllers with several periods of the PWM in one of theirs.
+const SLOW: [&str; 3] = [
+    "kind = \"pdcc\"\ndead_time_compensation = \"on\"",
+    "kind = \"pdcc\"\nmodulation = \"pair\"\nemf = \"model\"",
+    "kind = \"pi-pwm\"\nbandwidth = \"500 Hz\"",
+];
+
 /// A drive's specification: fields of the inverter, and the controller's section.
 pub fn specification(inverter: &str, controller: &str) -> String {
     format!("{MOTOR}{inverter}\n[controller]\n{controller}\n")
@@ -57,6 +64,14 @@ pub fn drives() -> Vec<(String, String)> {
             (what, specification(&inverter, controller))
         })
     };
+    let slower = [
+        each(
+            "pwm_per_control = 3\nsensed_phases = \"bc\"".to_owned(),
+            &SLOW,
+        ),
+        each(format!("pwm_per_control = 3\n{LOW_SIDE}"), &SLOW[..1]),
+        each("pwm_per_control = 2".to_owned(), &["kind = \"fcs-mpc\""]),
+    ];
     let in_phase = SENSORS
         .iter()
         .flat_map(|sensors| each((*sensors).to_owned(), &CONTROLLERS));
@@ -64,5 +79,8 @@ pub fn drives() -> Vec<(String, String)> {
         let inverter = format!("{sensors}\n{LOW_SIDE}");
         each(inverter, &["kind = \"pdcc\"", "kind = \"p-pwm\""])
     });
-    in_phase.chain(low_side).collect()
+    in_phase
+        .chain(low_side)
+        .chain(slower.into_iter().flatten())
+        .collect()
 }

@@ -92,7 +92,7 @@ fn every_wrong_limit_is_detected() {
             let mut faulty = sound.clone();
             faulty.interface.limits = limits;
             // Otherwise such a drive does not compile.
-            let noticed = !hexagen_lab::limits(&limits).hold()
+            let noticed = !hexagen_lab::limits(&limits).hold(&hexagen_lab::sensors(&limits))
                 || compare_record(&faulty, sound.graph.program(), &record).is_err()
                 || compare(&faulty, sound.graph.program(), STEPS, 1).is_err();
             if !noticed {

@@ -61,6 +61,14 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             "Compare value of 100 % duty: top of the centre-aligned timer.",
         ),
     ];
+    if inverter.pwm_per_control > 1 {
+        list.push(integer(
+            "PWM_PER_CONTROL",
+            "u16",
+            i64::from(inverter.pwm_per_control),
+            "PWM periods in a control period: each command is held for so many.",
+        ));
+    }
     list.extend(adc_constants(inverter));
     list.extend([
         fixed("V_BUS", inverter.v_bus, "V", "Nominal bus voltage"),
@@ -88,6 +96,8 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
 }
 
 fn adc_constants(inverter: &InverterSpec) -> [PublicConstant; 3] {
+    let sensors = inverter.sensors();
+    let is_one = sensors.iter().all(|sensor| *sensor == sensors[0]);
     [
         integer(
             "ADC_BITS",
@@ -99,17 +109,26 @@ fn adc_constants(inverter: &InverterSpec) -> [PublicConstant; 3] {
             "ADC_GAIN",
             inverter.adc_gain,
             "A",
-            if inverter.adc_gain < 0.0 {
-                "Current into the motor per ADC count, negative because counts fall with it"
-            } else {
-                "Current into the motor per ADC count"
+            match (is_one, inverter.adc_gain < 0.0) {
+                (true, false) => "Current into the motor per ADC count",
+                (true, true) => {
+                    "Current into the motor per ADC count, negative because counts fall with it"
+                }
+                (false, false) => "Current into the motor per ADC count, first sensor",
+                (false, true) => {
+                    "Current into the motor per ADC count, first sensor, negative because counts fall with it"
+                }
             },
         ),
         integer(
             "ADC_OFFSET",
             "u16",
             i64::from(inverter.adc_offset),
-            "ADC count at zero current before calibration.",
+            if is_one {
+                "ADC count at zero current before calibration."
+            } else {
+                "ADC count at zero current before calibration, first sensor."
+            },
         ),
     ]
 }

@@ -139,9 +139,9 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<Str
 }
 
 /// The machine and its inverter.
-fn motor_and_inverter(spec: &Spec) -> [String; 2] {
+fn motor_and_inverter(spec: &Spec) -> Vec<String> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    [
+    let mut lines = vec![
         format!(
             "Motor: {} pole pair{}, R = {}, L = {} per phase, EMF constant {} (phase peak), rated {} at {}.",
             motor.pole_pairs,
@@ -162,7 +162,16 @@ fn motor_and_inverter(spec: &Spec) -> [String; 2] {
             engineering(inverter.adc_gain, "A"),
             engineering(inverter.trip_current, "A"),
         ),
-    ]
+    ];
+    if inverter.pwm_per_control > 1 {
+        lines.push(format!(
+            "Control at {} (period {}): each command is held for {} periods of the PWM.",
+            frequency(1.0 / inverter.t_s),
+            engineering(inverter.t_s, "s"),
+            inverter.pwm_per_control,
+        ));
+    }
+    lines
 }
 
 /// Documentation of the speed regulator.

@@ -3,7 +3,8 @@
 use core::marker::PhantomData;
 use hexagen::arith::Word;
 use hexagen::{
-    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, Units, Words,
+    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, Sensors,
+    Units, Words,
 };
 
 /// The supervisor of `C` around a law without state that pulses all legs.
@@ -24,6 +25,7 @@ impl<C: Control> Control for Supervised<C> {
     const SPEC: &'static str = C::SPEC;
     const FORMATS: &'static [Format] = &[];
     const LIMITS: Limits = C::LIMITS;
+    const SENSORS: Sensors = C::SENSORS;
     const UNITS: Units = C::UNITS;
     const SET_POINT: Word = C::SET_POINT;
     const BUS: C::Bus = C::BUS;

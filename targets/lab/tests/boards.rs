@@ -1,7 +1,7 @@
 //! Every motor of the library on every board: which fit follows from a few numbers of both, and
 //! these generate; the others are refused for what does not fit.
 
-use hexagen_codegen::spec::ast::Value;
+use hexagen_codegen::spec::ast::{SpecAst, Value};
 use hexagen_codegen::spec::{BOARDS, BoardFile, Spec, parse_board};
 use hexagen_lab::boards::library_of_boards;
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
@@ -35,12 +35,20 @@ fn numbers(file: &BoardFile) -> Numbers {
         bus: [all("bus_min"), all("bus_max")],
         gain: shunt.or_else(|| number("adc_gain")).expect("a gain"),
         period: number("f_pwm").map(|frequency| periods / frequency),
-        waits: is_abc || periods > 1.0,
+        waits: is_abc,
+    }
+}
+
+/// The trip level that a motor's file states, ampere.
+fn stated_trip(motor: &SpecAst) -> Option<f64> {
+    match &motor.inverter.field("trip_current")?.value {
+        Value::Number(number) => Some(number.si()),
+        _ => None,
     }
 }
 
 /// What keeps a motor from a board, by their numbers alone.
-fn obstacle(board: &Numbers, motor: &Spec) -> Option<&'static str> {
+fn obstacle(board: &Numbers, motor: &Spec, trip: Option<f64>) -> Option<&'static str> {
     let (reach, max) = (2048.0 * board.gain, motor.inverter.max_current);
     let period = board.period.unwrap_or(motor.inverter.t_s);
     let per_period = motor.motor.resistance * period / motor.motor.inductance;
@@ -48,6 +56,8 @@ fn obstacle(board: &Numbers, motor: &Spec) -> Option<&'static str> {
         Some("HX0330")
     } else if reach < motor.motor.rated_current.max(max) {
         Some("HX0305")
+    } else if trip.is_some_and(|trip| trip > reach - board.gain) {
+        Some("HX0306")
     } else if max < 10.0 * board.gain {
         Some("HX0317")
     } else if per_period > 0.5 {
@@ -74,7 +84,7 @@ fn a_motor_fits_a_board_by_voltage_current_and_time_constant() {
             };
             let pair = format!("{} on {}", fit.motor, entry.name);
             let reason = fit.reason.as_deref().unwrap_or_default();
-            let obstacle = obstacle(&numbers, &own.spec);
+            let obstacle = obstacle(&numbers, &own.spec, stated_trip(&motor.ast));
             waiting += usize::from(obstacle == Some("HX0402"));
             match obstacle {
                 Some(code) => assert!(reason.contains(code), "{pair}: {code}, not {reason:?}"),

@@ -40,6 +40,7 @@ const SETTLED: u32 = 600;
 struct Run {
     blind: u64,
     torque: f64,
+    turn_ons: u64,
 }
 
 /// A drive that was generated for `sensors`, at full current, on a plant whose sensors are in the low legs.
@@ -74,6 +75,7 @@ fn run_on(sensors: &str, own: &str, controller: &str, rpm: f64) -> Run {
     Run {
         blind: plant.blind_samples(),
         torque,
+        turn_ons: plant.turn_ons(),
     }
 }
 
@@ -102,6 +104,24 @@ fn sensors_of_any_two_legs_show_the_same_torque() {
             other.torque
         );
     }
+}
+
+/// A control period of two PWM periods: the legs switch as often, currents are read half as often, at instants that
+/// every command leaves readable.
+#[test]
+fn a_command_is_repeated_in_each_pwm_period() {
+    let controller = "kind = \"pdcc\"";
+    let every = run(SENSORS, controller, 1000.0);
+    let sensors = format!("{SENSORS}pwm_per_control = 2\n");
+    let second = run_on(&sensors, &sensors, controller, 1000.0);
+    assert_eq!(second.blind, 0);
+    let ratio = second.turn_ons as f64 / every.turn_ons as f64;
+    assert!(
+        (1.9..2.1).contains(&ratio),
+        "{ratio} times as many turn-ons in twice the time"
+    );
+    let torque = second.torque / every.torque;
+    assert!((torque - 1.0).abs() < 0.02, "{torque} times the torque");
 }
 
 #[test]

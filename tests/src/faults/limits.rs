@@ -1,11 +1,11 @@
 //! Wrong limits of a supervisor, whose code every drive shares.
 
-use hexagen_codegen::interface::Limits;
+use hexagen_codegen::interface::{Limits, SensedPhases, Sensor};
 
 /// A fault: name and change.
 type Fault = (&'static str, fn(&mut Limits));
 
-const FAULTS: [Fault; 22] = [
+const FAULTS: [Fault; 25] = [
     ("a count more", |limits| limits.adc_max += 1),
     ("a count less", |limits| limits.adc_max -= 1),
     ("the other way round", |limits| {
@@ -22,6 +22,23 @@ const FAULTS: [Fault; 22] = [
     ("trip level one less", |limits| limits.trip -= 1),
     ("trip level a count more", |limits| {
         limits.trip += 1 << limits.current_bits;
+    }),
+    ("sensors of phases b and c", |limits| {
+        limits.sensors.phases = SensedPhases::Bc;
+    }),
+    ("second sensor the other way round", |limits| {
+        limits.sensors.second = Some(Sensor {
+            adc_inverted: !limits.adc_inverted,
+            offset: limits.offset,
+            offsets: limits.offsets,
+        });
+    }),
+    ("offset of the second sensor one more", |limits| {
+        limits.sensors.second = Some(Sensor {
+            adc_inverted: limits.adc_inverted,
+            offset: limits.offset + 1,
+            offsets: limits.offsets,
+        });
     }),
     ("twice the calibration", |limits| {
         limits.calibration_log2 += 1;
@@ -59,13 +76,19 @@ pub fn wrong_limits(sound: &Limits) -> Vec<(&'static str, Limits)> {
         let mut limits = *sound;
         change(&mut limits);
         let one = 1 << limits.current_bits;
-        let [least, most] = limits.offsets.map(i32::from);
         let top = i32::from(limits.adc_max);
-        limits.currents = if limits.adc_inverted {
-            [(least - top) * one, most * one]
-        } else {
-            [-most * one, (top - least) * one]
+        let range = |inverted: bool, offsets: [u16; 2]| {
+            let [least, most] = offsets.map(i32::from);
+            if inverted {
+                [(least - top) * one, most * one]
+            } else {
+                [-most * one, (top - least) * one]
+            }
         };
+        let first = range(limits.adc_inverted, limits.offsets);
+        let second = limits.sensors.second;
+        let second = second.map_or(first, |second| range(second.adc_inverted, second.offsets));
+        limits.currents = [first[0].min(second[0]), first[1].max(second[1])];
         (what, limits)
     });
     let differs = |(_, limits): &(_, Limits)| limits != sound;

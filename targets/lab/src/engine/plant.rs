@@ -20,6 +20,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         },
         v_bus: inverter.v_bus,
         t_s: inverter.t_s,
+        pwm_per_control: inverter.pwm_per_control as u16,
         timer_period: inverter.timer_period as u16,
         dead_time: inverter.dead_time,
         diode_drop: 0.0,

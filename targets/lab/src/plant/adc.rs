@@ -38,7 +38,7 @@ pub(super) fn is_held(
     command: Legs,
     leg: usize,
     timer_period: u16,
-    t_s: f64,
+    pwm_period: f64,
 ) -> bool {
     let duty = match command.state()[leg] {
         LegState::Pulsed => {
@@ -46,7 +46,7 @@ pub(super) fn is_held(
         }
         LegState::Low | LegState::Off => 0.0,
     };
-    0.5 * t_s * (1.0 - duty) >= low_side.hold - ROUNDING
+    0.5 * pwm_period * (1.0 - duty) >= low_side.hold - ROUNDING
 }
 
 #[cfg(test)]

@@ -76,27 +76,34 @@ impl Gates {
         }
     }
 
-    /// Starts a period of `t_s` seconds with the given command.
-    pub fn begin(&mut self, command: Legs, timer_period: u16, t_s: f64) {
+    /// Starts a period of so many pulses, each of `pwm_period` seconds, with the given command.
+    pub fn begin(&mut self, command: Legs, timer_period: u16, (pwm_period, pulses): (f64, u16)) {
         self.requests.clear();
         self.next = 0;
-        for leg in 0..3 {
+        for (leg, pulse) in (0..3).flat_map(|leg| (0..pulses).map(move |pulse| (leg, pulse))) {
+            let start = f64::from(pulse) * pwm_period;
             match command.state()[leg] {
-                LegState::Off => self.requests.push((0.0, leg, Gate::Off)),
-                LegState::Low => self.requests.push((0.0, leg, Gate::Lower)),
+                LegState::Off => self.requests.push((start, leg, Gate::Off)),
+                LegState::Low => self.requests.push((start, leg, Gate::Lower)),
                 LegState::Pulsed => {
                     let duty = f64::from(command.compare()[leg].min(timer_period))
                         / f64::from(timer_period);
                     if duty < 1.0 {
-                        self.requests.push((0.0, leg, Gate::Lower));
+                        self.requests.push((start, leg, Gate::Lower));
                     }
                     if duty > 0.0 {
-                        self.requests
-                            .push((0.5 * t_s * (1.0 - duty), leg, Gate::Upper));
+                        self.requests.push((
+                            start + 0.5 * pwm_period * (1.0 - duty),
+                            leg,
+                            Gate::Upper,
+                        ));
                     }
                     if duty > 0.0 && duty < 1.0 {
-                        self.requests
-                            .push((0.5 * t_s * (1.0 + duty), leg, Gate::Lower));
+                        self.requests.push((
+                            start + 0.5 * pwm_period * (1.0 + duty),
+                            leg,
+                            Gate::Lower,
+                        ));
                     }
                 }
             }
@@ -154,7 +161,7 @@ mod tests {
         let mut gates = Gates::new(dead_time);
         let mut changes = Vec::new();
         for (period, command) in commands.iter().enumerate() {
-            gates.begin(*command, 100, 1.0);
+            gates.begin(*command, 100, (1.0, 1));
             let mut t = 0.0;
             while t < 1.0 {
                 let before = gates.state();
@@ -189,6 +196,28 @@ mod tests {
             (2.0, Gate::Lower),
         ];
         assert_eq!(got, want.map(|(t, g)| (t, 0, g)));
+    }
+
+    #[test]
+    fn pulses_are_repeated_within_a_control_period() {
+        let mut gates = Gates::new(0.0);
+        gates.begin(pulsed(50), 100, (0.25, 2));
+        let mut seen = vec![];
+        let mut t = 0.0;
+        while t < 0.5 {
+            let next = gates.advance_to(t).min(0.5);
+            seen.push((t, gates.state()[0]));
+            t = next;
+        }
+        let want = [
+            (0.0, Gate::Lower),
+            (0.0625, Gate::Upper),
+            (0.1875, Gate::Lower),
+            (0.25, Gate::Lower),
+            (0.3125, Gate::Upper),
+            (0.4375, Gate::Lower),
+        ];
+        assert_eq!(seen, want);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The plant as a whole: state, one PWM period at a time, samples and truth.
+//! The plant as a whole: state, one control period at a time, samples and truth.
 
 use super::gates::Gates;
 use super::hall::Sensors;
@@ -174,20 +174,20 @@ impl Plant {
         let PlantParams {
             low_side: Some(low_side),
             timer_period,
-            t_s,
             ..
         } = self.params
         else {
             return;
         };
+        let pwm_period = self.params.pwm_period();
         let is_blind = |phase: &&usize| {
             self.seen(**phase) != self.currents[**phase]
-                || !adc::is_held(low_side, command, **phase, timer_period, t_s)
+                || !adc::is_held(low_side, command, **phase, timer_period, pwm_period)
         };
         self.blind += self.params.sensed.iter().filter(is_blind).count() as u64;
     }
 
-    /// Runs one PWM period under a command.
+    /// Runs one control period under a command.
     pub fn run_period(&mut self, command: Legs, observer: &mut dyn Observer) {
         let t_s = self.params.t_s;
         let mut volt_seconds = [0.0; 3];
@@ -196,7 +196,8 @@ impl Plant {
         let mut segments = 0;
         let mut t = 0.0;
         self.count_blind(command);
-        self.gates.begin(command, self.params.timer_period, t_s);
+        let pulses = (self.params.pwm_period(), self.params.pwm_per_control);
+        self.gates.begin(command, self.params.timer_period, pulses);
         while t < t_s {
             let until = self.gates.advance_to(t).min(t_s);
             self.prepare_segment(t, until);
@@ -206,7 +207,7 @@ impl Plant {
                 .network
                 .solve(gates, &mut self.currents, &mut self.segment);
             segments += 1;
-            if segments > MAX_SEGMENTS {
+            if segments > MAX_SEGMENTS * u32::from(self.params.pwm_per_control) {
                 self.segment.duration = self.segment.duration.max(planned.min(1e-3 * t_s));
             }
             let h = self.segment.duration;

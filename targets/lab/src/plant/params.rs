@@ -83,8 +83,11 @@ pub struct PlantParams {
     pub shape: EmfShape,
     /// Bus voltage in volts. A sag is a plant with a lower value than the controller's.
     pub v_bus: f64,
-    /// Control and PWM period in seconds.
+    /// Control period in seconds.
     pub t_s: f64,
+    /// PWM periods in a control period, in each of which the inverter plays the same command.
+    #[serde(default = "one")]
+    pub pwm_per_control: u16,
     /// Timer counts per PWM period: the compare value of full duty.
     pub timer_period: u16,
     /// Time in seconds for which both switches of a leg stay off at each change between them.
@@ -127,12 +130,22 @@ pub enum PlantError {
     },
 }
 
+/// PWM periods in a control period that no file tells.
+fn one() -> u16 {
+    1
+}
+
 /// The phases of current channels that no file names.
 fn a_and_b() -> [usize; 2] {
     [0, 1]
 }
 
 impl PlantParams {
+    /// Period of the PWM in seconds.
+    pub fn pwm_period(&self) -> f64 {
+        self.t_s / f64::from(self.pwm_per_control)
+    }
+
     /// An ideal plant with equal phases: trapezoidal EMF with a 120 degree flat top, no dead time,
     /// ideal diodes, 12-bit channels of +-40 A, standard Hall wiring, fixed speed, 1800 timer
     /// counts and 1800 capture ticks per period. Arguments in SI units, `k_phase` in V s/rad.
@@ -147,6 +160,7 @@ impl PlantParams {
             },
             v_bus,
             t_s,
+            pwm_per_control: one(),
             timer_period: 1800,
             dead_time: 0.0,
             diode_drop: 0.0,
@@ -250,14 +264,21 @@ impl PlantParams {
             (period, ""),
             "at least 1",
         )?;
-        let dead_ok = (0.0..self.t_s / 2.0).contains(&self.dead_time);
+        require(
+            self.pwm_per_control > 0,
+            "pwm_per_control",
+            (0.0, ""),
+            "at least 1",
+        )?;
+        let pwm_period = self.pwm_period();
+        let dead_ok = (0.0..pwm_period / 2.0).contains(&self.dead_time);
         require(
             dead_ok,
             "dead_time",
             (self.dead_time, "s"),
             &format!(
                 "from 0 to below half the period of {}",
-                engineering(self.t_s, "s")
+                engineering(pwm_period, "s")
             ),
         )?;
         let drop = self.diode_drop;

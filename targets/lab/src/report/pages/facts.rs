@@ -113,7 +113,7 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
     vec![
         ("Bus voltage", bus),
         ("Control period", quantity(inverter.t_s, "s")),
-        ("PWM frequency", quantity(1.0 / inverter.t_s, "Hz")),
+        ("PWM frequency", quantity(1.0 / inverter.pwm_period(), "Hz")),
         (
             "Timer counts for full duty",
             inverter.timer_period.to_string(),
