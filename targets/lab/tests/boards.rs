@@ -54,10 +54,10 @@ fn obstacle(board: &Numbers, motor: &Spec, trip: Option<f64>) -> Option<&'static
     let per_period = motor.motor.resistance * period / motor.motor.inductance;
     if motor.inverter.v_bus < board.bus[0] || motor.inverter.v_bus > board.bus[1] {
         Some("HX0330")
-    } else if reach < motor.motor.rated_current.max(max) {
-        Some("HX0305")
     } else if trip.is_some_and(|trip| trip > reach - board.gain) {
         Some("HX0306")
+    } else if reach < motor.motor.rated_current.max(max) {
+        Some("HX0305")
     } else if max < 10.0 * board.gain {
         Some("HX0317")
     } else if per_period > 0.5 {
