@@ -51,6 +51,8 @@ fn stated_trip(motor: &SpecAst) -> Option<f64> {
 fn obstacle(board: &Numbers, motor: &Spec, trip: Option<f64>) -> Option<&'static str> {
     let (reach, max) = (2048.0 * board.gain, motor.inverter.max_current);
     let period = board.period.unwrap_or(motor.inverter.t_s);
+    let electrical = motor.inverter.maximum_speed * f64::from(motor.motor.pole_pairs);
+    let turns = electrical * period / std::f64::consts::TAU;
     let per_period = motor.motor.resistance * period / motor.motor.inductance;
     if motor.inverter.v_bus < board.bus[0] || motor.inverter.v_bus > board.bus[1] {
         Some("HX0330")
@@ -62,6 +64,8 @@ fn obstacle(board: &Numbers, motor: &Spec, trip: Option<f64>) -> Option<&'static
         Some("HX0317")
     } else if per_period > 0.5 {
         Some("HX0301")
+    } else if turns > 1.0 / 6.0 {
+        Some("HX0312")
     } else if board.waits {
         Some("HX0402")
     } else {
