@@ -47,7 +47,7 @@ impl Limits {
     #[must_use]
     pub const fn hold(&self, sensors: &Sensors) -> bool {
         let [first, second] = sensors.both(self);
-        let (one, other) = (self.range(&first), self.range(&second));
+        let (one, other) = (self.range(first), self.range(second));
         let low = if one[0] < other[0] { one[0] } else { other[0] };
         let high = if one[1] > other[1] { one[1] } else { other[1] };
         let sum = (self.adc_max as i64) << (self.calibration_log2 & 15);
@@ -59,8 +59,8 @@ impl Limits {
         self.current_bits < 31
             && self.calibration_log2 < 16
             && self.adc_max > 1
-            && self.includes(&first)
-            && self.includes(&second)
+            && self.includes(first)
+            && self.includes(second)
             && self.trip > 0
             && self.stall_periods >= 0
             && self.stall_periods < word as i32
@@ -75,13 +75,13 @@ impl Limits {
     }
 
     /// Whether offset and tolerance of a sensor are in the ADC's range.
-    const fn includes(&self, sensor: &Sensor) -> bool {
+    const fn includes(&self, sensor: Sensor) -> bool {
         let [least, most] = sensor.offsets;
         least <= sensor.offset && sensor.offset <= most && most <= self.adc_max
     }
 
     /// Least and greatest current over all counts and accepted offsets of a sensor.
-    const fn range(&self, sensor: &Sensor) -> [i64; 2] {
+    const fn range(&self, sensor: Sensor) -> [i64; 2] {
         let [least, most] = sensor.offsets;
         let one = 1_i64 << (self.current_bits & 31);
         let (top, zero) = (self.adc_max as i64 * one, 0);
@@ -178,7 +178,7 @@ pub struct Sensor {
 impl Sensor {
     /// A phase current, of a count and an offset in words of current.
     #[inline]
-    fn current(&self, count: Word, offset: Word) -> Word {
+    fn current(self, count: Word, offset: Word) -> Word {
         if self.adc_inverted {
             offset - count
         } else {
@@ -530,14 +530,14 @@ impl Supervisor {
     }
 
     fn end_calibration(&mut self, limits: &Limits, sensors: &Sensors) {
-        let is_bad = |sensor: &Sensor, sum: Word| {
+        let is_bad = |sensor: Sensor, sum: Word| {
             let [least, most] = sensor
                 .offsets
                 .map(|offset| Word::from(offset) << limits.calibration_log2);
             sum < least || sum > most
         };
         let ([first, second], [sum_a, sum_b]) = (sensors.both(limits), self.sums);
-        if is_bad(&first, sum_a) || is_bad(&second, sum_b) {
+        if is_bad(first, sum_a) || is_bad(second, sum_b) {
             self.trip(Fault::Offset);
             return;
         }

@@ -556,8 +556,7 @@ fn supervisor_ranges(
     let word = |offset: u16| i32::from(offset) << limits.current_bits;
     let [first, second] = offsets.map(|[least, most]| (word(least), word(most)));
     Supervisor::NAMES.map(|name| match name {
-        "mode" => (0, 5),
-        "fault" => (0, 5),
+        "mode" | "fault" => (0, 5),
         "countdown" => (0, samples.max(limits.precharge_periods.into())),
         "sum_a" | "sum_b" => (0, full),
         "offset_a" => first,
