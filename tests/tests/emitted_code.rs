@@ -174,7 +174,7 @@ fn every_type_leads_to_what_its_supervisor_cannot_see() {
     let said = [
         "frozen at mid-scale",
         "several times the trip level",
-        "phase c, which has no sensor",
+        "the phase that has no sensor",
         "control interrupt that does not come",
         "shoot-through, and what is shorter than a control period",
         "(a) a comparator of the current on the timer's break input",
