@@ -124,12 +124,12 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         }
     });
     lines.push(match spec.brake_periods() {
-        0 => "`brake()` shorts the motor, which takes no more than `max_current` at any speed."
+        0 => "At any speed `brake()` shorts the motor, which takes at most `max_current` then."
             .to_owned(),
         periods => {
             let electrical = FRAC_PI_3 / (f64::from(periods) * inverter.t_s);
             format!(
-                "`brake()` shorts the motor up to {}; above, it opposes the rotation.",
+                "Up to {} `brake()` shorts the motor; above, it opposes the rotation.",
                 rpm(electrical / f64::from(spec.motor.pole_pairs))
             )
         }

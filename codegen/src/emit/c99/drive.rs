@@ -225,7 +225,7 @@ impl Drive<'_> {
         }
         let inner = INDENT.repeat(2);
         let mut text = format!(
-            "{INDENT}if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED\n             {inner}&& before != HEXAGEN_MODE_TRIPPED) {{\n"
+            "{INDENT}if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED\n{inner}&& before != HEXAGEN_MODE_TRIPPED) {{\n"
         );
         for kept in kept {
             let _ = writeln!(text, "{inner}drive->trip.{kept};");
