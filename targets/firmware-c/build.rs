@@ -135,15 +135,20 @@ fn word_choice() -> &'static str {
     }
 }
 
-/// Bytes of a supervisor.
-const SUPERVISOR: usize = 28;
+/// Bytes of a supervisor, of a sample, and of the number of a trip.
+const SUPERVISOR: usize = 44;
+const SAMPLE: usize = 16;
+const TRIP_NUMBER: usize = 4;
 
-/// Bytes of a drive: set-point words, status, supervisor, and state.
+/// Bytes of a drive: set-point words, status, supervisor and state, and the record of a trip, which
+/// has a sample, a supervisor, a state and the set-point words.
 fn size(program: &Program) -> usize {
-    let before = 4 * (program.params.len() + 1) + SUPERVISOR;
-    let end = program.states.iter().fold(before, |end, word| {
+    let words = program.states.iter();
+    let state = words.fold(0_usize, |end, word| {
         let bytes = if word.storage_bits == 16 { 2 } else { 4 };
         end.next_multiple_of(bytes) + bytes
     });
-    end.next_multiple_of(4)
+    let kept = 4 * program.params.len() + SUPERVISOR + state.next_multiple_of(4);
+    let status = 4;
+    status + kept + TRIP_NUMBER + SAMPLE + kept
 }

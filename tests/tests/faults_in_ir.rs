@@ -31,7 +31,7 @@ fn plant(drive: &Drive) -> (Vec<String>, usize) {
     let program = generated.graph.program();
     let all = record_states(&generated, STEPS, 1).expect("the drive has a model");
     // Most faults appear at once.
-    let (few, some) = (all.first(250), all.first(5000));
+    let (few, some) = (all.first(250), all.first(7500));
     let setters = constants_of_setters(program);
     let noticed = |program: &Program| {
         compare_record(&generated, program, &few).is_err()
