@@ -327,16 +327,14 @@ fn a_speed_loop_that_does_not_settle_says_so() {
         "pdcc:speed_loop=on",
         "--rpm",
         "0",
-        "--speed-set",
-        "1500",
         "--inertia",
         "7.06e-6",
         "--start-angle",
         "0.1",
-        "--load",
     ];
-    for (load, settled) in [("0.1", true), ("0.4", false)] {
-        let said = run(common.iter().chain(&[load, "--json"]));
+    for (speed, settled) in [("1500", true), ("5400", false)] {
+        let asked = ["--load", "0.1", "--speed-set", speed];
+        let said = run(common.iter().chain(&asked).chain(&["--json"]));
         let result = said.json();
         assert_eq!(result["settled"], settled, "{result}");
         assert_eq!(
@@ -345,7 +343,7 @@ fn a_speed_loop_that_does_not_settle_says_so() {
             "{}",
             said.stderr
         );
-        let table = run(common.iter().chain(&[load]));
+        let table = run(common.iter().chain(&asked));
         assert_eq!(table.code, 0);
         assert_eq!(
             table.stdout.contains(", NOT settled"),
@@ -360,6 +358,18 @@ fn a_speed_loop_that_does_not_settle_says_so() {
             table.stdout
         );
     }
+    // A load that the motor cannot move.
+    let stalled = run(common
+        .iter()
+        .chain(&["--load", "0.4", "--speed-set", "1500"]));
+    assert_eq!(stalled.code, 1, "{stalled:?}");
+    assert!(
+        stalled
+            .stderr
+            .contains("no Hall edge came within the stall time-out"),
+        "{}",
+        stalled.stderr
+    );
 }
 
 /// The conventional drive gives the more torque beyond what is asked for, the faster it turns.
