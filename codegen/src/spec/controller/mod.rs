@@ -195,7 +195,7 @@ impl ControllerSpec {
         with_options!(self, options => options.turns_off())
     }
 
-    /// [`Options::common_mode`].
+    /// Where the pulses of three legs lie; none where not all three are pulsed throughout.
     pub fn common_mode(&self) -> Option<CommonMode> {
         with_options!(self, options => options.common_mode())
     }
