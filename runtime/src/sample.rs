@@ -31,8 +31,8 @@ pub struct Sample {
 impl Sample {
     /// ADC counts of the currents of phases a and b, which rise with the current into the motor
     /// (`adc_inverted: on`: fall), and the Hall code `Ha Hb Hc` with Ha in bit 2. Where one of the
-    /// two phases has no sensor, its count is any, and [`third_current`](Self::third_current) adds
-    /// that of phase c.
+    /// two phases has no sensor, any number may stand for its count, and
+    /// [`third_current`](Self::third_current) adds the count of phase c.
     ///
     /// Any code is accepted: one that Hall sensors cannot give (0, 7 and above) trips the drive.
     #[inline]

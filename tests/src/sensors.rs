@@ -1,4 +1,8 @@
-//! Drives whose current sensors are not two alike of phases a and b, or read less often than the PWM's period.
+//! Drives with other current sensors than two alike in phases a and b: in the low legs, of other
+//! phases, unlike, or read less often than once in a PWM period.
+
+use crate::interpreter::{compare, compare_states};
+use crate::options::generate_toml;
 
 /// The paper's motor, with fields of its inverter to come.
 const MOTOR: &str = r#"[motor]
@@ -17,8 +21,10 @@ timer_clock = "72 MHz"
 adc_bits = 12
 adc_range = "40 A"
 dead_time = "500 ns"
-calibration_samples = 16
 "#;
+
+/// Few enough samples of a calibration for many start-ups.
+pub const SHORT: &str = "calibration_samples = 16\n";
 
 /// Sensors in the phases.
 const SENSORS: [&str; 5] = [
@@ -30,7 +36,7 @@ const SENSORS: [&str; 5] = [
 ];
 
 /// Sensors in the low legs.
-const LOW_SIDE: &str = r#"current_sensing = "low_side"
+pub const LOW_SIDE: &str = r#"current_sensing = "low_side"
 settling_time = "1 us"
 aperture_time = "200 ns"
 conversion_time = "0 us"
@@ -61,6 +67,7 @@ pub fn drives() -> Vec<(String, String)> {
     let each = |inverter: String, controllers: &'static [&'static str]| {
         controllers.iter().map(move |controller| {
             let what = format!("{inverter}, {controller}").replace('\n', ", ");
+            let inverter = format!("{SHORT}{inverter}");
             (what, specification(&inverter, controller))
         })
     };
@@ -83,4 +90,17 @@ pub fn drives() -> Vec<(String, String)> {
         .chain(low_side)
         .chain(slower.into_iter().flatten())
         .collect()
+}
+
+/// The interpreted graph of a drive takes the model's steps: so many of a stream, and a fourth of them
+/// from arbitrary states.
+///
+/// # Panics
+/// At a difference, or if the drive does not generate.
+pub fn assert_graph_is_model(what: &str, toml: &str, steps: u64, seed: u64) {
+    let (_, generated) = generate_toml(toml).unwrap_or_else(|errors| panic!("{what}: {errors}"));
+    let program = generated.graph.program();
+    compare(&generated, program, steps, seed).unwrap_or_else(|why| panic!("{what}: {why}"));
+    compare_states(&generated, program, steps / 4, seed)
+        .unwrap_or_else(|why| panic!("{what}: {why}"));
 }

@@ -7,7 +7,7 @@ use hexagen_lab::{formats, limits, sensors};
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{BitTrue, FormatTable, Mode, Spec, Stop};
 use hexagen_tests::options::{Drive, generate_toml};
-use hexagen_tests::sensors::specification;
+use hexagen_tests::sensors::{SHORT, specification};
 use hexagen_tests::states::States;
 use rayon::prelude::*;
 
@@ -320,7 +320,8 @@ impl Pair {
 
 #[test]
 fn every_planted_fault_is_detected() {
-    let sensors = SENSORS.map(|sensors| specification(sensors, "kind = \"pdcc\""));
+    let sensors =
+        SENSORS.map(|sensors| specification(&format!("{SHORT}{sensors}"), "kind = \"pdcc\""));
     let mut sound = DRIVES.map(|drive| Sound::of(&drive)).to_vec();
     sound.extend(sensors.map(|toml| Sound::of_toml(&toml)));
     let noticed = |new: New| sound.iter().any(|sound| sound.differs(new));

@@ -2,35 +2,11 @@
 //! command leaves the range in which each leg can be read.
 
 use hexagen_codegen::ir::{Output, Phase};
-use hexagen_tests::interpreter::{compare, compare_states};
 use hexagen_tests::options::generate_toml;
+use hexagen_tests::sensors::{LOW_SIDE, assert_graph_is_model, specification};
 
 /// Steps of each drive's stream, and a fourth of them from arbitrary states.
 const STEPS: u64 = 4_000;
-
-const MOTOR: &str = r#"[motor]
-pole_pairs = 4
-resistance = "135 mohm per_phase"
-inductance = "0.22 mH per_phase"
-winding = "star"
-back_emf = "0.1648 V/(rad/s) line_to_line peak"
-emf_shape = "trapezoidal"
-rated_current = "20 A"
-rated_speed = "1600 rpm"
-[inverter]
-bus_voltage = "48 V"
-f_pwm = "20 kHz"
-timer_clock = "72 MHz"
-adc_bits = 12
-adc_range = "40 A"
-dead_time = "500 ns"
-"#;
-
-const SENSORS: &str = r#"current_sensing = "low_side"
-settling_time = "1 us"
-aperture_time = "200 ns"
-conversion_time = "0 us"
-"#;
 
 const BUS: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\n";
 
@@ -55,11 +31,11 @@ const COMMON_MODES: [&str; 4] = [
 ];
 
 fn each_drive(check: impl Fn(&str, &str)) {
-    let measured = format!("{SENSORS}{BUS}");
-    for inverter in ["", SENSORS, BOOTSTRAP, &measured] {
+    let measured = format!("{LOW_SIDE}{BUS}");
+    for inverter in ["", LOW_SIDE, BOOTSTRAP, &measured] {
         for controller in CONTROLLERS {
             for common_mode in COMMON_MODES {
-                let text = format!("{MOTOR}{inverter}[controller]\n{controller}\n{common_mode}\n");
+                let text = specification(inverter, &format!("{controller}\n{common_mode}"));
                 check(&format!("{inverter}{controller}\n{common_mode}"), &text);
             }
         }
@@ -68,14 +44,7 @@ fn each_drive(check: impl Fn(&str, &str)) {
 
 #[test]
 fn graph_and_model_agree() {
-    each_drive(|name, text| {
-        let (_, generated) =
-            generate_toml(text).unwrap_or_else(|errors| panic!("{name}: {errors}"));
-        let program = generated.graph.program();
-        compare(&generated, program, STEPS, 7).unwrap_or_else(|what| panic!("{name}: {what}"));
-        compare_states(&generated, program, STEPS / 4, 7)
-            .unwrap_or_else(|what| panic!("{name}: {what}"));
-    });
+    each_drive(|name, text| assert_graph_is_model(name, text, STEPS, 7));
 }
 
 /// The verifier has proved these intervals; the largest compare value is worked out here once more.

@@ -4,7 +4,7 @@
 use hexagen::{Drive, Fault, LegState, Sample, controller, verify};
 use hexagen_tests::interpreter::{compare, compare_states};
 use hexagen_tests::options::generate_toml;
-use hexagen_tests::sensors::drives;
+use hexagen_tests::sensors::{assert_graph_is_model, drives};
 
 /// Steps of each drive's stream, and a fourth of them from arbitrary states.
 const STEPS: u64 = 6_000;
@@ -12,12 +12,7 @@ const STEPS: u64 = 6_000;
 #[test]
 fn graph_and_model_agree() {
     for (what, toml) in drives() {
-        let (_, generated) =
-            generate_toml(&toml).unwrap_or_else(|errors| panic!("{what}: {errors}"));
-        let program = generated.graph.program();
-        compare(&generated, program, STEPS, 11).unwrap_or_else(|why| panic!("{what}: {why}"));
-        compare_states(&generated, program, STEPS / 4, 11)
-            .unwrap_or_else(|why| panic!("{what}: {why}"));
+        assert_graph_is_model(&what, &toml, STEPS, 11);
     }
 }
 

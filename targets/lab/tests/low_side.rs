@@ -7,31 +7,8 @@ use hexagen_lab::Interpreted;
 use hexagen_lab::engine::plant_of;
 use hexagen_lab::plant::Plant;
 use hexagen_reference::verify::Subject;
+use hexagen_tests::sensors::{LOW_SIDE, specification};
 use std::f64::consts::TAU;
-
-const MOTOR: &str = r#"[motor]
-pole_pairs = 4
-resistance = "135 mohm per_phase"
-inductance = "0.22 mH per_phase"
-winding = "star"
-back_emf = "0.1648 V/(rad/s) line_to_line peak"
-emf_shape = "trapezoidal"
-rated_current = "20 A"
-rated_speed = "1600 rpm"
-[inverter]
-bus_voltage = "48 V"
-f_pwm = "20 kHz"
-timer_clock = "72 MHz"
-adc_bits = 12
-adc_range = "40 A"
-dead_time = "500 ns"
-"#;
-
-const SENSORS: &str = r#"current_sensing = "low_side"
-settling_time = "1 us"
-aperture_time = "200 ns"
-conversion_time = "0 us"
-"#;
 
 /// Periods of a run, and from which on the torque counts.
 const PERIODS: u32 = 1200;
@@ -45,13 +22,13 @@ struct Run {
 
 /// A drive that was generated for `sensors`, at full current, on a plant whose sensors are in the low legs.
 fn run(sensors: &str, controller: &str, rpm: f64) -> Run {
-    run_on(sensors, SENSORS, controller, rpm)
+    run_on(sensors, LOW_SIDE, controller, rpm)
 }
 
 /// The same on a plant with its own sensors.
 fn run_on(sensors: &str, own: &str, controller: &str, rpm: f64) -> Run {
     let checked = |sensors: &str| {
-        let text = format!("{MOTOR}{sensors}[controller]\n{controller}\n");
+        let text = specification(sensors, controller);
         parse_toml(&text, "m.toml")
             .and_then(|ast| check(&ast))
             .expect("a right specification")
@@ -83,13 +60,13 @@ fn run_on(sensors: &str, own: &str, controller: &str, rpm: f64) -> Run {
 #[test]
 fn sensors_of_any_two_legs_show_the_same_torque() {
     let controller = "kind = \"pdcc\"";
-    let expected = run(SENSORS, controller, 1500.0).torque;
+    let expected = run(LOW_SIDE, controller, 1500.0).torque;
     for sensors in [
         "sensed_phases = \"bc\"\n",
         "sensed_phases = \"ca\"\n",
         "sensed_phases = \"ca\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]\n",
     ] {
-        let sensors = format!("{SENSORS}{sensors}");
+        let sensors = format!("{LOW_SIDE}{sensors}");
         let own = run_on(&sensors, &sensors, controller, 1500.0);
         assert_eq!(own.blind, 0, "{sensors}");
         assert!(
@@ -97,7 +74,7 @@ fn sensors_of_any_two_legs_show_the_same_torque() {
             "{sensors}: {} Nm",
             own.torque
         );
-        let other = run_on(&sensors, SENSORS, controller, 1500.0);
+        let other = run_on(&sensors, LOW_SIDE, controller, 1500.0);
         assert!(
             other.torque < 0.5 * expected,
             "{sensors}: {} Nm",
@@ -111,8 +88,8 @@ fn sensors_of_any_two_legs_show_the_same_torque() {
 #[test]
 fn a_command_is_repeated_in_each_pwm_period() {
     let controller = "kind = \"pdcc\"";
-    let every = run(SENSORS, controller, 1000.0);
-    let sensors = format!("{SENSORS}pwm_per_control = 2\n");
+    let every = run(LOW_SIDE, controller, 1000.0);
+    let sensors = format!("{LOW_SIDE}pwm_per_control = 2\n");
     let second = run_on(&sensors, &sensors, controller, 1000.0);
     assert_eq!(second.blind, 0);
     let ratio = second.turn_ons as f64 / every.turn_ons as f64;
@@ -135,7 +112,7 @@ fn an_accepted_drive_has_no_blind_sample() {
         "kind = \"p-pwm\"",
     ] {
         for rpm in [-1500.0, 300.0, 1000.0, 1500.0, 1800.0, 2200.0] {
-            let run = run(SENSORS, controller, rpm);
+            let run = run(LOW_SIDE, controller, rpm);
             assert_eq!(run.blind, 0, "{controller} at {rpm} rpm");
         }
     }
@@ -147,7 +124,7 @@ fn an_accepted_drive_has_no_blind_sample() {
 fn without_the_window_the_currents_are_lost() {
     let controller = "kind = \"pdcc\"";
     let (with, without) = (
-        run(SENSORS, controller, 1800.0),
+        run(LOW_SIDE, controller, 1800.0),
         run("", controller, 1800.0),
     );
     assert_eq!(with.blind, 0);

@@ -5,7 +5,7 @@ use crate::laws::current_loop::{LinearLoop, LoopDesign, SeenEmf};
 use crate::spec::PPwmSpec;
 use nalgebra::DVector;
 
-/// The proportional loop; state i, i_prev, v_now, v_prev, e_prev, e_next.
+/// The proportional loop as a linear system of the state (i, i_prev, v_now, v_prev, e_prev, e_next).
 #[derive(Clone, Copy, Debug)]
 pub struct ProportionalLoop<'d> {
     /// Options.

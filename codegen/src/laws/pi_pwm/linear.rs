@@ -19,7 +19,7 @@ pub fn is_stable_with_winding_time(spec: &Spec, options: &PiPwmSpec) -> bool {
     linear.spectral_radius(spec) < 1.0
 }
 
-/// The PI loop; state i, i_prev, v_now, v_prev, e_prev, e_next, integral.
+/// The PI loop as a linear system of the state (i, i_prev, v_now, v_prev, e_prev, e_next, integral).
 #[derive(Clone, Copy, Debug)]
 pub struct PiLoop<'d> {
     /// Options.

@@ -101,7 +101,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Those of a specification; the trip level, and what a count is worth, in the model's unit.
+    /// The limits of a specification. The trip level and the current of an ADC count are in the model's
+    /// unit of current.
     pub fn new(spec: &Spec, i_trip: f64, count: f64) -> Result<Self, Error> {
         let inverter = &spec.inverter;
         let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
