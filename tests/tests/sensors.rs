@@ -2,8 +2,6 @@
 //! they equal the bit-true model; the supervisor watches the right phases.
 
 use hexagen::{Drive, Fault, LegState, Sample, controller, verify};
-use hexagen_tests::interpreter::{compare, compare_states};
-use hexagen_tests::options::generate_toml;
 use hexagen_tests::sensors::{assert_graph_is_model, drives};
 
 /// Steps of each drive's stream, and a fourth of them from arbitrary states.
