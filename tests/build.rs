@@ -1,5 +1,8 @@
 //! Generates the drives that the tests compile: a covering array over motors and options for each
 //! kind of controller, and drives with planted faults.
+//!
+//! In a push a motor meets both word lengths; the environment's `HEXAGEN_WHOLE_PRODUCTS` lets it
+//! meet every option value.
 
 #[expect(dead_code, reason = "shared with the tests, which use the rest")]
 #[path = "src/library.rs"]
@@ -20,9 +23,13 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+/// Makes every motor meet every option value.
+const WHOLE_PRODUCTS: &str = "HEXAGEN_WHOLE_PRODUCTS";
+
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=src");
+    println!("cargo:rerun-if-env-changed={WHOLE_PRODUCTS}");
     println!("cargo:rerun-if-changed={}", library::FOLDER);
     let out_dir = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     let motors = library::motors();
@@ -128,7 +135,8 @@ fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
     fs::write(out_dir.join("covering_specifications.rs"), list).expect("OUT_DIR can be written");
 }
 
-/// Text of a kind's drives: every pair of option values, and every motor with every option value.
+/// Text of a kind's drives: every pair of option values, and every motor with both word lengths or
+/// with every option value.
 #[derive(Default)]
 struct CoveringArray {
     modules: String,
@@ -155,7 +163,13 @@ impl CoveringArray {
         };
         let mut lengths: Vec<usize> = kind.axes.iter().map(|axis| axis.values.len()).collect();
         lengths.push(able.len());
-        let covering = pairwise::cover(&lengths, |row| generate_toml(&toml(row, None)).is_ok());
+        let is_whole = env::var_os(WHOLE_PRODUCTS).is_some();
+        let is_paired = |one: usize, other: usize| {
+            let is_motor = other == kind.axes.len();
+            !is_motor || is_whole || kind.axes[one].name == "word"
+        };
+        let accepts = |row: &[usize]| generate_toml(&toml(row, None)).is_ok();
+        let covering = pairwise::cover(&lengths, is_paired, accepts);
         for (number, row) in covering.rows.iter().enumerate() {
             let name = format!("{}{number:02}", type_name(kind));
             let module = emit(&toml(row, Some(&name)), &name).expect("an accepted row generates");

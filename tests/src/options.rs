@@ -48,8 +48,8 @@ pub struct Kind {
 /// One value per axis of a kind, as indices.
 pub type Choice = Vec<usize>;
 
-/// Number of a combination of independent options, with the value of another axis (by index).
-pub type Meeting = (usize, (usize, usize));
+/// An independent option with its value, and another option with its value, all by index.
+pub type Meeting = ((usize, usize), (usize, usize));
 
 /// Placeholder of a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
@@ -414,35 +414,28 @@ impl Kind {
         // Knuth's multiplicative hash; its upper bits are the mixed ones.
         let hash = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
         let turn = hash as usize % combinations(self.loose());
-        self.with_loose(&digits(self.bound(), index), turn)
+        [digits(self.bound(), index), digits(self.loose(), turn)].concat()
     }
 
-    /// A choice with combination `number` of the loose options.
-    pub fn with_loose(&self, choice: &[usize], number: usize) -> Choice {
-        let bound = &choice[..self.bound().len()];
-        [bound, &digits(self.loose(), number)].concat()
-    }
-
-    /// Number of the independent options' combination in a choice, with every value of another axis
-    /// (numbers of axis and value).
+    /// The values of independent options in a choice, each with every other option's value.
     pub fn meetings(&self, choice: &[usize]) -> Vec<Meeting> {
-        let (bound, loose) = choice.split_at(self.bound().len());
-        let axes = self.loose().iter().zip(loose);
-        let combination = axes.fold(0, |number, (axis, value)| {
-            number * axis.values.len() + value
-        });
-        let values = bound.iter().copied().enumerate();
-        values.map(|showing| (combination, showing)).collect()
+        let mut values: Vec<(usize, usize)> = choice.iter().copied().enumerate().collect();
+        let loose = values.split_off(self.bound().len());
+        let met = |of: (usize, usize)| values.iter().map(move |value| (of, *value));
+        loose.into_iter().flat_map(met).collect()
     }
 
-    /// All combinations of this kind.
+    /// All such pairs of values of this kind.
     pub fn all_meetings(&self) -> impl Iterator<Item = Meeting> {
         let values = |(axis, values): (usize, &Axis)| {
             (0..values.values.len()).map(move |value| (axis, value))
         };
-        (0..combinations(self.loose())).flat_map(move |combination| {
-            let showings = self.bound().iter().enumerate().flat_map(values);
-            showings.map(move |showing| (combination, showing))
+        let axes = self.axes.iter().enumerate();
+        let loose = axes.clone().skip(self.bound().len()).flat_map(values);
+        let bound = axes.take(self.bound().len());
+        loose.flat_map(move |of| {
+            let others = bound.clone().flat_map(values);
+            others.map(move |value| (of, value))
         })
     }
 

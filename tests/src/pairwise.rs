@@ -21,12 +21,18 @@ pub struct Covering {
     pub open: Vec<Pair>,
 }
 
-/// Covers all pairs of axes with these numbers of values by rows that `accepts` accepts.
-pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering {
+/// Covers the values of all pairs of axes that `is_paired` names, the lesser axis first, by rows that
+/// `accepts` accepts. The axes have these numbers of values.
+pub fn cover(
+    lengths: &[usize],
+    is_paired: impl Fn(usize, usize) -> bool,
+    accepts: impl Fn(&[usize]) -> bool,
+) -> Covering {
     let mut order = Shuffle(1);
     let mut witnesses: BTreeMap<Pair, Vec<usize>> = BTreeMap::new();
     let mut covering = Covering::default();
-    for pair in pairs(lengths) {
+    let pairs = pairs(lengths, is_paired);
+    for &pair in &pairs {
         if witnesses.contains_key(&pair) {
             continue;
         }
@@ -38,10 +44,8 @@ pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering 
         let rows = first.chain(random).chain(known);
         let mut rows = rows.map(|row| with_pair(row, pair));
         if let Some(row) = rows.find(|row| accepts(row)) {
-            let known = pairs(lengths)
-                .into_iter()
-                .filter(|pair| covers(&row, *pair));
-            witnesses.extend(known.map(|pair| (pair, row.clone())));
+            let known = pairs.iter().filter(|pair| covers(&row, **pair));
+            witnesses.extend(known.map(|pair| (*pair, row.clone())));
         } else {
             covering.open.push(pair);
         }
@@ -60,11 +64,11 @@ pub fn cover(lengths: &[usize], accepts: impl Fn(&[usize]) -> bool) -> Covering 
     covering
 }
 
-/// All pairs, the first axes first.
-fn pairs(lengths: &[usize]) -> Vec<Pair> {
+/// The pairs to cover, the first axes first.
+fn pairs(lengths: &[usize], is_paired: impl Fn(usize, usize) -> bool) -> Vec<Pair> {
     let mut pairs = vec![];
     for a in 0..lengths.len() {
-        for b in a + 1..lengths.len() {
+        for b in (a + 1..lengths.len()).filter(|b| is_paired(a, *b)) {
             for x in 0..lengths[a] {
                 pairs.extend((0..lengths[b]).map(|y| ((a, x), (b, y))));
             }
@@ -156,7 +160,7 @@ mod tests {
         let lengths = [3, 2, 4, 2, 3];
         // One pair, and a value that allows only one other.
         let forbidden = |row: &[usize]| row[0] == 2 && row[2] == 3 || row[4] == 1 && row[2] != 2;
-        let covering = cover(&lengths, |row| !forbidden(row));
+        let covering = cover(&lengths, |_, _| true, |row| !forbidden(row));
         let open = [0, 1, 3].map(|value| ((2, value), (4, 1)));
         assert_eq!(covering.open, [&[((0, 2), (2, 3))][..], &open].concat());
         assert!(covering.rows.len() < 20, "{} rows", covering.rows.len());
@@ -179,7 +183,7 @@ mod tests {
         // Beside the last axis' second value the others have their first ones.
         let lengths = [6, 6, 6, 6, 2];
         let accepts = |row: &[usize]| row[4] == 0 || row[..4] == [0; 4];
-        let covering = cover(&lengths, accepts);
+        let covering = cover(&lengths, |_, _| true, accepts);
         for axis in 0..4 {
             assert!(!covering.open.contains(&((axis, 0), (4, 1))));
         }
@@ -188,6 +192,14 @@ mod tests {
 
     #[test]
     fn the_same_call_gives_the_same_rows() {
-        assert_eq!(cover(&[3, 3, 2], |_| true), cover(&[3, 3, 2], |_| true));
+        let covered = || cover(&[3, 3, 2], |_, _| true, |_| true);
+        assert_eq!(covered(), covered());
+    }
+
+    #[test]
+    fn an_axis_paired_with_one_other_costs_few_rows() {
+        let lengths = [3, 2, 11];
+        let covering = cover(&lengths, |a, b| b != 2 || a == 1, |_| true);
+        assert_eq!(covering.rows.len(), 22);
     }
 }

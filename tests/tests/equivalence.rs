@@ -1,6 +1,6 @@
 //! The compiled code equals the bit-true model in every output and state bit, for an array of
-//! drives of each kind of controller, with every pair of option values and every motor with every
-//! option value.
+//! drives of each kind of controller, with every pair of option values and every motor with both
+//! word lengths (`HEXAGEN_WHOLE_PRODUCTS`: with every option value).
 
 use hexagen_reference::verify::{Report, VerifyError, verify};
 use hexagen_tests::options::{kinds, untested_options};

@@ -214,6 +214,19 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         Step {
             environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
             ..step(
+                "every motor with every option value",
+                &[
+                    "test",
+                    "--package",
+                    "hexagen-tests",
+                    "--test",
+                    "equivalence",
+                ],
+            )
+        },
+        Step {
+            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
+            ..step(
                 "all emitted C, checked and unchecked",
                 &["test", "--package", "hexagen-lab", "--test", "c99"],
             )
