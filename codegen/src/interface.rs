@@ -138,10 +138,16 @@ pub struct Limits {
     pub precharge_periods: u16,
     /// Control periods without a Hall edge under demand that are a stall; 0 for no stall detection.
     pub stall_periods: i32,
+    /// Hall sensors that are inverted, as bits of the code.
+    pub hall_inverted: u8,
+    /// Samples in a row with a disturbed Hall code that are bridged; 0 for none.
+    pub hall_glitches: u16,
     /// Sector 1 to 6 by Hall code, four bits each, code 0 lowest; 0 of an invalid code.
     pub sectors: u32,
     /// Control periods of a sector below which braking shorts the motor.
     pub brake_periods: i32,
+    /// Least and greatest count of the bus ADC without a fault; 0 and 65535 for none.
+    pub bus_counts: [u16; 2],
     /// The current sensors.
     pub sensors: Sensors,
 }

@@ -1,7 +1,7 @@
 /* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
-#if HEXAGEN_ABI != 2
+#if HEXAGEN_ABI != 3
 #error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
 #endif
 
@@ -93,6 +93,8 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     supervisor->fault = HEXAGEN_FAULT_NONE;
     supervisor->countdown = 0;
     supervisor->hall_prev = 0;
+    supervisor->hall_gap = 0;
+    supervisor->hall_glitches = 0;
     supervisor->stall_count = 0;
     supervisor->sum_a = 0;
     supervisor->sum_b = 0;
@@ -106,8 +108,7 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     supervisor->brake_direction = 0;
 }
 
-/** Turns all legs off until a reset. The first fault is kept. */
-static void trip(hexagen_supervisor *supervisor, hexagen_fault fault)
+void hexagen_trip(hexagen_supervisor *supervisor, hexagen_fault fault)
 {
     if (supervisor->mode != HEXAGEN_MODE_TRIPPED) {
         supervisor->fault = fault;
@@ -135,7 +136,7 @@ static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits
 {
     if (is_bad_offset(limits, 0, supervisor->sum_a)
         || is_bad_offset(limits, 1, supervisor->sum_b)) {
-        trip(supervisor, HEXAGEN_FAULT_OFFSET);
+        hexagen_trip(supervisor, HEXAGEN_FAULT_OFFSET);
         return;
     }
     supervisor->offset_a = mean(limits, supervisor->sum_a);
@@ -184,19 +185,35 @@ static void start_up(
 
 /** The first fault of a sample. */
 static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    const hexagen_sample *sample, int32_t first, int32_t second)
+    const hexagen_sample *sample, bool has_hall, int32_t first, int32_t second)
 {
     if (hexagen_is_at_end(limits, hexagen_count(limits, sample, 0))
         || hexagen_is_at_end(limits, hexagen_count(limits, sample, 1))) {
         return HEXAGEN_FAULT_ADC_RANGE;
     }
-    if (!hexagen_is_hall_code(sample->hall)) {
+    if (!has_hall) {
         return HEXAGEN_FAULT_HALL;
     }
     if (hexagen_is_over(limits, first, second)) {
         return HEXAGEN_FAULT_OVER_CURRENT;
     }
     return hexagen_is_stalled(supervisor, limits) ? HEXAGEN_FAULT_STALL : HEXAGEN_FAULT_NONE;
+}
+
+/**
+ * Takes a sample with a disturbed Hall code as one more of a gap; false if the gap is too long, or no
+ * code is known yet.
+ */
+static bool bridge(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    if (supervisor->hall_prev == 0U || supervisor->hall_gap >= limits->hall_glitches) {
+        return false;
+    }
+    supervisor->hall_gap = (uint16_t)(supervisor->hall_gap + 1U);
+    if (supervisor->hall_glitches < HEXAGEN_MOST_GLITCHES) {
+        supervisor->hall_glitches = (uint16_t)(supervisor->hall_glitches + 1U);
+    }
+    return true;
 }
 
 /** Sector of a Hall code; 0 of an invalid one. */
@@ -237,11 +254,12 @@ static bool is_slow(hexagen_supervisor *supervisor, const hexagen_limits *limits
 static hexagen_rested go_on_braking(
     hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
 {
-    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, 0 };
+    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
     if (is_slow(supervisor, limits, hall)) {
         rested.leg = HEXAGEN_LEG_LOW;
     } else {
         rested.is_controlled = true;
+        rested.is_braking = true;
         rested.against = supervisor->brake_direction;
     }
     return rested;
@@ -259,20 +277,28 @@ hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits
     const int32_t second = hexagen_current(limits, 1, count_b, supervisor->offset_b);
     const int32_t third = hexagen_clamp(
         hexagen_third(first, second), limits->current_least, limits->current_most);
-    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, 0 };
+    const uint16_t sampled = hexagen_hall_of(limits, sample);
+    const bool is_sound = hexagen_is_sound(supervisor, limits, sampled);
+    const bool is_bridged = !is_sound && bridge(supervisor, limits);
+    const uint16_t hall = is_bridged      ? supervisor->hall_prev
+        : hexagen_is_hall_code(sampled) ? sampled
+                                        : 0U;
+    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
     hexagen_fault fault;
     hexagen_take_currents(limits, checked, first, second, third);
-    checked->hall = hexagen_is_hall_code(sample->hall) ? (int32_t)sample->hall : 0;
+    checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
-    fault = find_fault(supervisor, limits, sample, first, second);
+    fault = find_fault(supervisor, limits, sample, is_sound || is_bridged, first, second);
     if (fault != HEXAGEN_FAULT_NONE) {
-        trip(supervisor, fault);
+        hexagen_trip(supervisor, fault);
         return rested;
     }
-    if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {
+    if (supervisor->mode == HEXAGEN_MODE_RUN) {
+        rested.is_controlled = is_bridged;
+    } else if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {
         rested.leg = HEXAGEN_LEG_LOW;
     } else if (supervisor->mode == HEXAGEN_MODE_BRAKE) {
-        rested = go_on_braking(supervisor, limits, sample->hall);
+        rested = go_on_braking(supervisor, limits, hall);
     }
     start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
     return rested;
@@ -360,7 +386,7 @@ void hexagen_start_bus(hexagen_bus *bus, int32_t first, int32_t second)
     bus->left = 0;
 }
 
-void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second)
+void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second, int32_t judged)
 {
     int32_t spare;
     /* The interrupted call would go on filling the bank that this one publishes. */
@@ -373,7 +399,7 @@ void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second)
     bus->banks[spare][1] = second;
     bus->published = spare;
     bus->storing = 0;
-    bus->told = 1;
+    bus->told = judged;
 }
 
 /* ---- Signals ------------------------------------------------------------------------------ */
@@ -477,10 +503,12 @@ void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words)
     words[6] = supervisor->offset_b;
     words[7] = supervisor->stall_count;
     words[8] = (int32_t)supervisor->hall_prev;
-    words[9] = (int32_t)supervisor->brake_hall;
-    words[10] = supervisor->brake_age;
-    words[11] = supervisor->brake_interval;
-    words[12] = supervisor->brake_direction;
+    words[9] = (int32_t)supervisor->hall_gap;
+    words[10] = (int32_t)supervisor->hall_glitches;
+    words[11] = (int32_t)supervisor->brake_hall;
+    words[12] = supervisor->brake_age;
+    words[13] = supervisor->brake_interval;
+    words[14] = supervisor->brake_direction;
 }
 
 void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
@@ -494,9 +522,11 @@ void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
     supervisor->offset_b = words[6];
     supervisor->stall_count = words[7];
     supervisor->hall_prev = (uint16_t)words[8];
-    supervisor->brake_hall = (uint16_t)words[9];
-    supervisor->brake_age = words[10];
-    supervisor->brake_interval = words[11];
-    supervisor->brake_direction = words[12];
+    supervisor->hall_gap = (uint16_t)words[9];
+    supervisor->hall_glitches = (uint16_t)words[10];
+    supervisor->brake_hall = (uint16_t)words[11];
+    supervisor->brake_age = words[12];
+    supervisor->brake_interval = words[13];
+    supervisor->brake_direction = words[14];
 }
 #endif

@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /** Version of this interface. Drives refuse to compile with a header of another version. */
-#define HEXAGEN_ABI 2
+#define HEXAGEN_ABI 3
 
 /** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -144,13 +144,20 @@ typedef enum {
     HEXAGEN_MODE_BRAKE = 5
 } hexagen_mode;
 
-/** Cause of a trip. If one sample has several, the first of this list is reported. */
+/** Cause of a trip. If one control period has several, the first of this list is reported. */
 typedef enum {
     /** Not tripped. */
     HEXAGEN_FAULT_NONE = 0,
+    /** The bus voltage that `set_bus` told was above `over_voltage`. */
+    HEXAGEN_FAULT_OVER_VOLTAGE = 6,
+    /** The bus voltage that `set_bus` told was below `under_voltage`. */
+    HEXAGEN_FAULT_UNDER_VOLTAGE = 7,
     /** A current ADC was at an end of its range: count 0, the largest count, or more. */
     HEXAGEN_FAULT_ADC_RANGE = 1,
-    /** The Hall code was invalid: 000, 111 or above. */
+    /**
+     * The Hall code was one that no sensors give (000, 111 or above; with sensors 60 degrees apart 010
+     * and 101 or others), or disturbed in more samples in a row than `hall_glitches`.
+     */
     HEXAGEN_FAULT_HALL = 3,
     /** A phase current was above the trip level. */
     HEXAGEN_FAULT_OVER_CURRENT = 2,
@@ -170,15 +177,24 @@ typedef struct {
      * with `v_bus: fixed`.
      */
     bool bus_is_stale;
+    /**
+     * Samples with a disturbed Hall code that were bridged since the drive was initialised or reset,
+     * at most 32,767; 0 unless the specification has `hall_glitches`.
+     */
+    uint16_t hall_glitches;
 } hexagen_status;
 
-/** Unpacks the status word of the control loop: mode in the lower 8 bits, fault above. */
+/**
+ * Unpacks the status word of the control loop: mode in the lower 8 bits, then 8 bits of the fault,
+ * bridged samples above.
+ */
 static inline hexagen_status hexagen_status_of(int32_t word, bool bus_is_stale)
 {
     hexagen_status status;
     status.mode = (hexagen_mode)(word & 0xff);
-    status.fault = (hexagen_fault)(word >> 8);
+    status.fault = (hexagen_fault)((word >> 8) & 0xff);
     status.bus_is_stale = bus_is_stale;
+    status.hall_glitches = (uint16_t)((uint32_t)word >> 16);
     return status;
 }
 
@@ -366,6 +382,13 @@ typedef struct {
      * Stall time-out: control periods without a Hall edge under demand; 0 for no stall detection.
      */
     int32_t stall_periods;
+    /**
+     * Hall sensors whose signal is inverted before anything else, as bits of the code: one of three
+     * sensors that stand 60 degrees apart. With them the codes are 001 to 110.
+     */
+    uint16_t hall_inverted;
+    /** Samples in a row with a disturbed Hall code that are bridged; 0 for none. */
+    uint16_t hall_glitches;
     /** Sector 1 to 6 by Hall code, four bits each, code 0 lowest; 0 of an invalid code. */
     uint32_t sectors;
     /**
@@ -373,6 +396,9 @@ typedef struct {
      * than the largest current; 0 if it never takes more.
      */
     int32_t brake_periods;
+    /** Least and greatest ADC count of the bus voltage without a fault; 0 and 65535 for none. */
+    uint16_t bus_least;
+    uint16_t bus_most;
 } hexagen_limits;
 
 /**
@@ -381,17 +407,17 @@ typedef struct {
  */
 #define HEXAGEN_LIMITS(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-    stall_periods, sectors, brake_periods) \
+    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most) \
     HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
         offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-        stall_periods, sectors, brake_periods, HEXAGEN_SENSED_AB, adc_inverted, offset, \
-        offset_least, offset_most)
+        stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most, \
+        HEXAGEN_SENSED_AB, adc_inverted, offset, offset_least, offset_most)
 
 /** The same for any two sensors: the first one's sign and offset, then phases and the second's. */
 #define HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-    stall_periods, sectors, brake_periods, sensed, second_inverted, second_offset, second_least, \
-    second_most) \
+    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most, \
+    sensed, second_inverted, second_offset, second_least, second_most) \
     typedef int name##_hold[HEXAGEN_LIMITS_HOLD((int64_t)(adc_max), current_bits, trip, \
         (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods, \
         brake_periods) \
@@ -414,7 +440,7 @@ typedef struct {
         { { adc_inverted, offset, offset_least, offset_most }, \
             { second_inverted, second_offset, second_least, second_most } }, \
         trip, current_least, current_most, calibration_log2, precharge_periods, stall_periods, \
-        sectors, brake_periods }
+        hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most }
 
 /**
  * Whether limits are valid, but for their sensors; the phase without a sensor has the negative sum
@@ -441,27 +467,39 @@ typedef struct {
  * The supervisor of a drive: mode, first fault, offsets of the current ADCs.
  *
  * It trips on what samples show: a current above the trip level, a current ADC at an end of its
- * range, an invalid Hall code, and where told to, a rotor that stands. It cannot see, and nothing
- * else here does:
+ * range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
+ * `set_bus` tells. It cannot see, and nothing else here does:
  *
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
  *   mid-scale can let the true current rise to several times the trip level;
  * - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
  * - a control interrupt that does not come: the last command stands;
  * - heat, shoot-through, and what is shorter than a control period;
- * - a bus voltage, be it too high for the switches.
+ * - a bus voltage that nobody measures, or that rises between two calls of `set_bus`.
  *
  * So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog
  * on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus
- * voltage, too.
+ * voltage, too: all legs off end no voltage above the bus that the diodes pass on.
+ *
+ * A Hall code is disturbed if no sensors give it, and with `hall_glitches` also if it is not that of
+ * the last sector or of one beside it. So many samples in a row with such a code are bridged: the
+ * drive goes on as if the last code had stayed, and counts them in its status; one more is a fault.
+ * Without `hall_glitches` a code that no sensors give is a fault at once, and one that skips sectors
+ * is none.
  */
 typedef struct {
     hexagen_mode mode;
     hexagen_fault fault;
     /** Periods left in calibration or pre-charge. */
     uint16_t countdown;
-    /** Last valid Hall code, if stalls are detected; 0 before the first. */
+    /**
+     * Last Hall code that was not disturbed, if stalls are detected or codes bridged; 0 before the
+     * first.
+     */
     uint16_t hall_prev;
+    /** Samples since then, bridged, and all that were, at most HEXAGEN_MOST_GLITCHES. */
+    uint16_t hall_gap;
+    uint16_t hall_glitches;
     /** Periods under demand since the last Hall edge. */
     int32_t stall_count;
     /** Sums of calibration samples of the first and the second sensor, counts. */
@@ -536,6 +574,12 @@ static inline bool hexagen_is_at_end(const hexagen_limits *limits, uint16_t coun
     return count == 0U || count >= limits->adc_max;
 }
 
+/** The Hall code of a sample, of which no sensor is inverted any more. */
+static inline uint16_t hexagen_hall_of(const hexagen_limits *limits, const hexagen_sample *sample)
+{
+    return (uint16_t)(sample->hall ^ limits->hall_inverted);
+}
+
 /** Whether the Hall code is valid: 001 to 110. */
 static inline bool hexagen_is_hall_code(uint16_t hall)
 {
@@ -548,6 +592,31 @@ static inline bool hexagen_is_over(const hexagen_limits *limits, int32_t first, 
     const int32_t third = hexagen_third(first, second);
     return hexagen_exceeds(first, limits->trip) || hexagen_exceeds(second, limits->trip)
         || hexagen_exceeds(third, limits->trip);
+}
+
+/** Whether a Hall code is not disturbed. Codes of sectors side by side differ in one sensor. */
+static inline bool hexagen_is_sound(
+    const hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+{
+    const uint32_t changed = (uint32_t)hall ^ supervisor->hall_prev;
+    const bool is_beside = (changed & (changed - 1U)) == 0U;
+    return hexagen_is_hall_code(hall)
+        && (limits->hall_glitches == 0U || supervisor->hall_prev == 0U || is_beside);
+}
+
+/** Follows the Hall code of a sample; whether it is not disturbed. */
+static inline bool hexagen_watch_hall(
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+{
+    const bool is_sound = hexagen_is_sound(supervisor, limits, hall);
+    if (limits->hall_glitches != 0U && is_sound) {
+        supervisor->hall_gap = 0;
+        /* Where stalls are detected, the code is kept with its edge. */
+        if (limits->stall_periods == 0) {
+            supervisor->hall_prev = hall;
+        }
+    }
+    return is_sound;
 }
 
 /** Whether the stall time-out has passed. */
@@ -563,7 +632,8 @@ static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hex
 {
     if (limits->stall_periods != 0) {
         const uint16_t before = supervisor->hall_prev;
-        const uint16_t hall = hexagen_is_hall_code(sampled) ? sampled : before;
+        const uint16_t hall =
+            hexagen_is_sound(supervisor, limits, sampled) ? sampled : before;
         const bool is_edge = hall != before && before != 0U;
         supervisor->hall_prev = hall;
         if (is_edge || *set_point == 0 || supervisor->mode != HEXAGEN_MODE_RUN) {
@@ -585,16 +655,18 @@ static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hex
 static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, const volatile int32_t *set_point, hexagen_checked *checked)
 {
-    const bool is_stalled = hexagen_watch_stall(supervisor, limits, sample->hall, set_point);
+    const uint16_t hall = hexagen_hall_of(limits, sample);
+    const bool is_sound = hexagen_watch_hall(supervisor, limits, hall);
+    const bool is_stalled = hexagen_watch_stall(supervisor, limits, hall, set_point);
     const uint16_t count_first = hexagen_count(limits, sample, 0);
     const uint16_t count_second = hexagen_count(limits, sample, 1);
     const int32_t first = hexagen_current(limits, 0, count_first, supervisor->offset_a);
     const int32_t second = hexagen_current(limits, 1, count_second, supervisor->offset_b);
     hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
-    checked->hall = (int32_t)sample->hall;
+    checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
     return supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is_at_end(limits, count_first)
-        && !hexagen_is_at_end(limits, count_second) && hexagen_is_hall_code(sample->hall)
+        && !hexagen_is_at_end(limits, count_second) && is_sound
         && !hexagen_is_over(limits, first, second) && !is_stalled;
 }
 
@@ -607,17 +679,20 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 typedef struct {
     /** The state of all legs, unless the period is one of control. */
     hexagen_leg leg;
-    /** It brakes a fast rotor: control with the largest torque against its direction. */
+    /** The period is one of control after all: a disturbed Hall code is bridged, or it brakes. */
     bool is_controlled;
+    /** It brakes a fast rotor: control with the largest torque against its direction. */
+    bool is_braking;
     /** 1 forward, -1 backward; 0 while it is unknown: control at set-point 0. */
     int32_t against;
 } hexagen_rested;
 
 /**
  * A period without control, after hexagen_check returned false: continues start-up, trips on a
- * fault, brakes, and returns what the drive does instead. In the checked sample, counts are clamped
- * to the ADC's range, the current of a phase without a sensor to that of one with a sensor, and an
- * invalid Hall code is 0.
+ * fault, bridges a disturbed Hall code, brakes, and returns what the drive does instead. In the
+ * checked sample, counts are clamped to the ADC's range, the current of a phase without a sensor to
+ * that of one with a sensor; a Hall code that is bridged is the last one, and another that no sensors
+ * give is 0.
  */
 HEXAGEN_COLD hexagen_rested hexagen_rest(hexagen_supervisor *supervisor,
     const hexagen_limits *limits, const hexagen_sample *sample, hexagen_checked *checked);
@@ -666,10 +741,17 @@ void hexagen_brake(hexagen_supervisor *supervisor);
 /** Ends coasting and braking. False, without effect, if the drive does neither. */
 bool hexagen_resume(hexagen_supervisor *supervisor);
 
-/** Mode and fault in one word, as the control loop publishes them. */
+/** Turns all legs off until a reset, for a fault that a sample does not show. The first is kept. */
+void hexagen_trip(hexagen_supervisor *supervisor, hexagen_fault fault);
+
+/** Count of bridged samples at which counting ends. */
+#define HEXAGEN_MOST_GLITCHES 0x7fffU
+
+/** Mode, fault and bridged samples in one word, as the control loop publishes them. */
 static inline int32_t hexagen_status_word(const hexagen_supervisor *supervisor)
 {
-    return (int32_t)supervisor->mode | ((int32_t)supervisor->fault << 8);
+    return (int32_t)supervisor->mode | ((int32_t)supervisor->fault << 8)
+        | ((int32_t)supervisor->hall_glitches * INT32_C(0x10000));
 }
 
 /* ---- Bus voltage ------------------------------------------------------------------------- */
@@ -685,7 +767,10 @@ typedef struct {
     volatile int32_t published;
     /** Control periods left of a call in progress; 0 for none. */
     volatile int32_t storing;
-    /** Not 0: a call took effect since the last control period. */
+    /**
+     * Not 0: a call took effect since the last control period, with a sound voltage, HEXAGEN_SOUND,
+     * or one with the fault of this number.
+     */
     volatile int32_t told;
     /** Control periods until the voltage is stale; written by the control loop only. */
     volatile int32_t left;
@@ -697,11 +782,22 @@ typedef struct {
 /** Initial state, with the words of the nominal voltage. */
 void hexagen_start_bus(hexagen_bus *bus, int32_t first, int32_t second);
 
+/** A call of `set_bus` whose voltage has no fault. */
+#define HEXAGEN_SOUND (-INT32_C(1))
+
+/** What is wrong with a bus voltage of so many ADC counts; HEXAGEN_SOUND if nothing. */
+static inline int32_t hexagen_judge_bus(const hexagen_limits *limits, uint16_t counts)
+{
+    return (counts > limits->bus_most) ? (int32_t)HEXAGEN_FAULT_OVER_VOLTAGE
+        : (counts < limits->bus_least) ? (int32_t)HEXAGEN_FAULT_UNDER_VOLTAGE
+                                       : HEXAGEN_SOUND;
+}
+
 /**
- * Replaces both words together. A call that interrupts another one has no effect; one that never
+ * Replaces both words together, by those of a voltage of which hexagen_judge_bus said this. A call that interrupts another one has no effect; one that never
  * resumes after an interruption blocks later calls for HEXAGEN_GIVEN_UP control periods.
  */
-void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second);
+void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second, int32_t judged);
 
 /** The words of the last call. */
 static inline const volatile int32_t *hexagen_bus_words(const hexagen_bus *bus)
@@ -711,15 +807,17 @@ static inline const volatile int32_t *hexagen_bus_words(const hexagen_bus *bus)
 
 /**
  * Called at each control period: ages the voltage, and a call in progress. The voltage is stale
- * after `periods` of them without a call that takes effect.
+ * after `periods` of them without a call that takes effect. The fault of such a call since the last
+ * period.
  */
-static inline void hexagen_pass_period(hexagen_bus *bus, int32_t periods)
+static inline hexagen_fault hexagen_pass_period(hexagen_bus *bus, int32_t periods)
 {
     const int32_t storing = bus->storing;
+    const int32_t told = bus->told;
     if (storing != 0) {
         bus->storing = storing - 1;
     }
-    if (bus->told != 0) {
+    if (told != 0) {
         bus->told = 0;
         bus->left = periods;
     } else {
@@ -728,6 +826,7 @@ static inline void hexagen_pass_period(hexagen_bus *bus, int32_t periods)
             bus->left = left - 1;
         }
     }
+    return (told > 0) ? (hexagen_fault)told : HEXAGEN_FAULT_NONE;
 }
 
 /** Whether the voltage is stale, as of the last control period. */
@@ -842,7 +941,7 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
 
 #ifdef HEXAGEN_VERIFICATION
 /** Words of a supervisor. */
-#define HEXAGEN_WORDS 13
+#define HEXAGEN_WORDS 15
 
 /**
  * Copies the words of a supervisor: mode, fault, countdown, sum_a, sum_b, offset_a, offset_b,

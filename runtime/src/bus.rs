@@ -1,5 +1,6 @@
 //! The bus voltage of a drive: fixed by its specification, or measured.
 
+use crate::Fault;
 use crate::arith::Word;
 use crate::bus_watch::BusWatch;
 use crate::double_buffer::DoubleBuffer;
@@ -11,10 +12,11 @@ pub trait Bus: Debug + Send + Sync + 'static {
     type Words: Copy;
     /// Words of the last call.
     fn read(&self) -> Self::Words;
-    /// Replaces them together; false, without effect, if the call interrupts another one.
-    fn tell(&self, words: Self::Words) -> bool;
-    /// Ages the voltage by a control period.
-    fn pass_period(&self);
+    /// Replaces them together, by those of a voltage with this fault; false, without effect, if the
+    /// call interrupts another one.
+    fn tell(&self, words: Self::Words, fault: Option<Fault>) -> bool;
+    /// Ages the voltage by a control period; the fault of the call since the last one.
+    fn pass_period(&self) -> Option<Fault>;
     /// Whether the last call that took effect is too old.
     fn is_stale(&self) -> bool;
     /// Words of the last call, two at most; 0 where there are none.
@@ -32,12 +34,14 @@ impl Bus for FixedBus {
     fn read(&self) {}
 
     #[inline]
-    fn tell(&self, (): ()) -> bool {
+    fn tell(&self, (): (), _: Option<Fault>) -> bool {
         false
     }
 
     #[inline]
-    fn pass_period(&self) {}
+    fn pass_period(&self) -> Option<Fault> {
+        None
+    }
 
     #[inline]
     fn is_stale(&self) -> bool {
@@ -78,18 +82,18 @@ impl<const N: usize, const PERIODS: i32> Bus for ToldBus<N, PERIODS> {
     }
 
     #[inline]
-    fn tell(&self, words: [Word; N]) -> bool {
+    fn tell(&self, words: [Word; N], fault: Option<Fault>) -> bool {
         let takes_effect = self.words.store(words);
         if takes_effect {
-            self.watch.told();
+            self.watch.told(fault);
         }
         takes_effect
     }
 
     #[inline]
-    fn pass_period(&self) {
+    fn pass_period(&self) -> Option<Fault> {
         self.words.pass_period();
-        self.watch.pass_period(Word(PERIODS));
+        self.watch.pass_period(Word(PERIODS))
     }
 
     #[inline]

@@ -1,5 +1,6 @@
-//! Age of the measured bus voltage.
+//! Age of the measured bus voltage, and what is wrong with it.
 
+use crate::Fault;
 use crate::arith::Word;
 use crate::double_buffer::Place;
 use core::sync::atomic::AtomicI32;
@@ -21,16 +22,17 @@ impl BusWatch {
         })
     }
 
-    /// `set_bus` took effect.
+    /// `set_bus` took effect, with a voltage that has this fault.
     #[inline]
-    pub(crate) fn told(&self) {
-        self.0.told();
+    pub(crate) fn told(&self, fault: Option<Fault>) {
+        self.0.told(fault.map_or(SOUND, |fault| fault as i32));
     }
 
-    /// A control period has passed; the voltage is stale after `periods` of them without a call.
+    /// A control period has passed; the voltage is stale after `periods` of them without a call. The
+    /// fault of a call since the last period.
     #[inline]
-    pub(crate) fn pass_period(&self, periods: Word) {
-        self.0.pass_period(periods.0);
+    pub(crate) fn pass_period(&self, periods: Word) -> Option<Fault> {
+        Fault::from_number(self.0.pass_period(periods.0))
     }
 
     /// Whether the voltage is stale, as of the last control period.
@@ -41,9 +43,10 @@ impl BusWatch {
     }
 }
 
-/// `told`: not since the last period. Any other number: since then.
+/// `told`: not since the last period. Any other number: since then, by a call whose voltage is
+/// sound, or has the fault of this number.
 pub(crate) const NO: i32 = 0;
-const YES: i32 = 1;
+pub(crate) const SOUND: i32 = -1;
 
 /// The watch over any kind of memory cell.
 #[derive(Debug)]
@@ -57,21 +60,23 @@ pub(crate) struct Watch<P> {
 
 impl<P: Place> Watch<P> {
     #[inline]
-    pub(crate) fn told(&self) {
-        self.told.store(YES);
+    pub(crate) fn told(&self, what: i32) {
+        self.told.store(what);
     }
 
     #[inline]
-    pub(crate) fn pass_period(&self, periods: i32) {
-        if self.told.load() != NO {
+    pub(crate) fn pass_period(&self, periods: i32) -> i32 {
+        let told = self.told.load();
+        if told != NO {
             self.told.store(NO);
             self.left.store(periods);
-            return;
+            return told;
         }
         let left = self.left.load();
         if left != 0 {
             self.left.store(left.wrapping_sub(1));
         }
+        NO
     }
 
     #[inline]

@@ -5,7 +5,8 @@ use crate::bus::Bus;
 use crate::set_point::debug;
 use crate::trip::Trip;
 use crate::{
-    Checked, Command, Control, Legs, Observation, Rest, Sample, SetPoint, State, Status, Supervisor,
+    Checked, Command, Control, Fault, Legs, Observation, Rest, Sample, SetPoint, State, Status,
+    Supervisor,
 };
 use core::fmt;
 use core::ops::{ControlFlow, Deref};
@@ -127,7 +128,8 @@ impl<C: Control> Drive<C> {
     #[doc(hidden)]
     pub fn set_bus_counts(&self, counts: u16) {
         if let Some(words) = C::TOLD_BUS {
-            self.set_point.words.bus.tell(words(counts.into()));
+            let fault = C::LIMITS.bus_fault(counts);
+            self.set_point.words.bus.tell(words(counts.into()), fault);
         }
     }
 
@@ -196,7 +198,9 @@ impl<C: Control> ControlLoop<'_, C> {
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> C::Command {
         let Self { set_point, core } = self;
-        set_point.words.bus.pass_period();
+        if let Some(fault) = set_point.words.bus.pass_period() {
+            trip(set_point, core, *sample, fault);
+        }
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
         let checked = match core.supervisor.check(limits, sensors, sample, is_demanded) {
@@ -291,7 +295,8 @@ impl<C: Control> ControlLoop<'_, C> {
 }
 
 /// A period without control, in start-up, with a fault or off on purpose; or one that brakes a fast
-/// rotor, which continues in control. Only these change mode and fault, so they are published here. The sample is passed by value, so that it uses memory on this path only.
+/// rotor or bridges a disturbed Hall code, which continues in control. Only these change the status,
+/// so it is published here. The sample is passed by value, so that it uses memory on this path only.
 #[cold]
 #[inline(never)]
 fn rest<C: Control>(
@@ -302,18 +307,11 @@ fn rest<C: Control>(
     let was_tripped = core.supervisor.fault();
     let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, &sample);
     if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
-        let [current, speed] = set_point.demands();
-        let trip = Trip {
-            fault,
-            sample,
-            current: current.0,
-            speed: speed.0,
-            bus: set_point.words.bus.kept(),
-        };
-        set_point.trip.keep(&trip, &core.supervisor, &core.law);
+        keep(set_point, core, sample, fault);
     }
     set_point.status.store(core.supervisor.status_bits().into());
     match rest {
+        Rest::Control => ControlFlow::Continue(checked),
         Rest::Against(direction) => {
             set_point.oppose(direction);
             ControlFlow::Continue(checked)
@@ -324,6 +322,29 @@ fn rest<C: Control>(
             ControlFlow::Break(C::Command::at_rest(state))
         }
     }
+}
+
+/// Trips a drive, unless it is tripped already, for what its sample does not show.
+#[cold]
+#[inline(never)]
+fn trip<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample, fault: Fault) {
+    if core.supervisor.fault().is_none() {
+        core.supervisor.trip(fault);
+        keep(set_point, core, sample, fault);
+    }
+}
+
+/// Keeps the period of a trip.
+fn keep<C: Control>(set_point: &SetPoint<C>, core: &Core<C>, sample: Sample, fault: Fault) {
+    let [current, speed] = set_point.demands();
+    let trip = Trip {
+        fault,
+        sample,
+        current: current.0,
+        speed: speed.0,
+        bus: set_point.words.bus.kept(),
+    };
+    set_point.trip.keep(&trip, &core.supervisor, &core.law);
 }
 
 impl<C: Control> fmt::Debug for ControlLoop<'_, C> {

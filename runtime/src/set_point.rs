@@ -94,9 +94,10 @@ impl<C: Control> SetPoint<C> {
 
     /// Sets the bus voltage as an ADC count.
     ///
-    /// A voltage outside `bus_min` to `bus_max` of the specification is clamped to that range,
-    /// without a fault; before the first call the nominal voltage is used. The status reports 100
-    /// ms without a call ([`Status::bus_is_stale`]).
+    /// A voltage above `over_voltage` or below `under_voltage` of the specification trips the drive in
+    /// the next control period, as any call that takes effect does again after a reset. The law takes
+    /// a voltage outside `bus_min` to `bus_max` as the nearer of them, and before the first call the
+    /// nominal one. The status reports 100 ms without a call ([`Status::bus_is_stale`]).
     ///
     /// A call that interrupts another one has no effect; one that never resumes after an
     /// interruption blocks later calls for 65,536 control periods. From an interrupt that can
@@ -106,7 +107,8 @@ impl<C: Control> SetPoint<C> {
     where
         C: MeasuredBus,
     {
-        self.words.bus.tell(C::bus(counts.into()));
+        let fault = C::LIMITS.bus_fault(counts);
+        self.words.bus.tell(C::bus(counts.into()), fault);
     }
 
     /// Mode and fault as of the last control period; may be called from anywhere while the control

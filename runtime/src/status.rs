@@ -39,15 +39,20 @@ impl Mode {
     }
 }
 
-/// Cause of a trip. If one sample has several, the first of this list is reported.
+/// Cause of a trip. If one control period has several, the first of this list is reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 #[repr(u8)]
 pub enum Fault {
+    /// The bus voltage that `set_bus` told was above `over_voltage`.
+    OverVoltage = 6,
+    /// The bus voltage that `set_bus` told was below `under_voltage`.
+    UnderVoltage = 7,
     /// A current ADC was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,
-    /// The Hall code was invalid: 000, 111 or above.
+    /// The Hall code was one that no sensors give (000, 111 or above; with sensors 60 degrees apart 010
+    /// and 101 or others), or disturbed in more samples in a row than `hall_glitches`.
     Hall = 3,
     /// A phase current was above the trip level.
     OverCurrent = 2,
@@ -68,6 +73,8 @@ impl Fault {
             3 => Some(Self::Hall),
             4 => Some(Self::Stall),
             5 => Some(Self::Offset),
+            6 => Some(Self::OverVoltage),
+            7 => Some(Self::UnderVoltage),
             _ => None,
         }
     }
@@ -78,6 +85,8 @@ impl fmt::Display for Fault {
         f.write_str(match self {
             Self::AdcRange => "a current ADC is at an end of its range",
             Self::OverCurrent => "a phase current is above the trip level",
+            Self::OverVoltage => "the bus voltage is too high",
+            Self::UnderVoltage => "the bus voltage is too low",
             Self::Hall => "the Hall code is invalid",
             Self::Stall => "the rotor is stalled",
             Self::Offset => "a calibrated current offset is too far from its nominal value",
@@ -101,6 +110,9 @@ pub struct Status {
     /// old voltage; before the first call, the nominal one. A warning, which trips nothing. Never
     /// set with `v_bus: fixed`.
     pub bus_is_stale: bool,
+    /// Samples with a disturbed Hall code that were bridged since the drive was made or reset, at most
+    /// 32,767; 0 unless the specification has `hall_glitches`. A warning of noise on the wires.
+    pub hall_glitches: u16,
 }
 
 impl Status {
@@ -111,10 +123,10 @@ impl Status {
         matches!(self.mode, Mode::Run)
     }
 
-    /// Mode and fault in one word, as the control loop publishes them.
+    /// Mode, fault and bridged samples in one word, as the control loop publishes them.
     #[inline]
-    pub(crate) const fn to_bits(mode: Mode, fault: Option<Fault>) -> i32 {
-        mode as i32 | number(fault) << 8
+    pub(crate) const fn to_bits(mode: Mode, fault: Option<Fault>, hall_glitches: u16) -> i32 {
+        mode as i32 | number(fault) << 8 | (hall_glitches as i32) << 16
     }
 
     /// Inverse of [`Status::to_bits`].
@@ -122,8 +134,9 @@ impl Status {
     pub(crate) const fn from_bits(bits: i32, bus_is_stale: bool) -> Self {
         Self {
             mode: Mode::from_number(bits & 0xff),
-            fault: Fault::from_number(bits >> 8),
+            fault: Fault::from_number(bits >> 8 & 0xff),
             bus_is_stale,
+            hall_glitches: (bits >> 16) as u16,
         }
     }
 }
@@ -140,6 +153,7 @@ pub(crate) const fn number(fault: Option<Fault>) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::{Fault, Mode, Status};
+    use crate::supervisor::MOST_GLITCHES;
 
     #[test]
     fn every_status_round_trips_through_its_word() {
@@ -148,8 +162,12 @@ mod tests {
             assert_eq!(mode as i32, number);
             for number in 0..8 {
                 let fault = Fault::from_number(number);
-                let status = Status::from_bits(Status::to_bits(mode, fault), false);
-                assert_eq!((status.mode, status.fault), (mode, fault));
+                for glitches in [0, 1, MOST_GLITCHES] {
+                    let bits = Status::to_bits(mode, fault, glitches);
+                    let status = Status::from_bits(bits, false);
+                    let read = (status.mode, status.fault, status.hall_glitches);
+                    assert_eq!(read, (mode, fault, glitches));
+                }
             }
         }
         assert_eq!(Status::from_bits(0, false), Status::default());
@@ -159,7 +177,7 @@ mod tests {
     fn a_fault_has_an_error_message() {
         let error: &dyn core::error::Error = &Fault::Hall;
         assert!(error.source().is_none());
-        for number in 1..=5 {
+        for number in 1..=7 {
             assert!(Fault::from_number(number).is_some_and(|fault| fault as i32 == number));
         }
     }

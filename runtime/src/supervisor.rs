@@ -34,11 +34,18 @@ pub struct Limits {
     pub precharge_periods: u16,
     /// Stall time-out: control periods without a Hall edge under demand; 0 for no stall detection.
     pub stall_periods: i32,
+    /// Hall sensors whose signal is inverted before anything else, as bits of the code: one of three
+    /// sensors that stand 60 degrees apart. With them the codes are 001 to 110.
+    pub hall_inverted: u8,
+    /// Samples in a row with a disturbed Hall code that are bridged; 0 for none.
+    pub hall_glitches: u16,
     /// Sector 1 to 6 by Hall code, four bits each, code 0 lowest; 0 of an invalid code.
     pub sectors: u32,
     /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
     /// than the largest current; 0 if it never takes more.
     pub brake_periods: i32,
+    /// Least and greatest ADC count of the bus voltage without a fault; 0 and 65535 for none.
+    pub bus_counts: [u16; 2],
 }
 
 impl Limits {
@@ -103,6 +110,26 @@ impl Limits {
             first.current(first_count, first_offset),
             second.current(second_count, second_offset),
         ]
+    }
+
+    /// The Hall code of a sample, of which no sensor is inverted any more.
+    #[inline]
+    const fn hall_of(&self, sample: &Sample) -> u8 {
+        sample.hall ^ self.hall_inverted
+    }
+
+    /// What is wrong with a bus voltage of so many ADC counts.
+    #[inline]
+    #[must_use]
+    pub const fn bus_fault(&self, counts: u16) -> Option<Fault> {
+        let [least, most] = self.bus_counts;
+        if counts > most {
+            Some(Fault::OverVoltage)
+        } else if counts < least {
+            Some(Fault::UnderVoltage)
+        } else {
+            None
+        }
     }
 
     /// Sector of a Hall code; 0 of an invalid one.
@@ -262,33 +289,43 @@ const fn is_hall_code(hall: u8) -> bool {
 /// # Safe states
 ///
 /// Each [`Fault`] turns all legs off until a reset; the period of the trip is kept until then
-/// ([`SetPoint::trip`](crate::SetPoint::trip)). Neither a Hall code that skips sectors nor any
-/// bus voltage is a fault.
+/// ([`SetPoint::trip`](crate::SetPoint::trip)).
+///
+/// A Hall code is disturbed if no sensors give it, and with `hall_glitches` also if it is not that of
+/// the last sector or of one beside it. So many samples in a row with such a code are bridged: the
+/// drive goes on as if the last code had stayed, at the speed that it knows, and counts them
+/// ([`Status::hall_glitches`]); one more is a fault. Without `hall_glitches` a code that no sensors
+/// give is a fault at once, and one that skips sectors is none.
 ///
 /// # What the supervisor cannot see
 ///
 /// It trips on what samples show: a current above the trip level, a current ADC at an end of its
-/// range, an invalid Hall code, and where told to, a rotor that stands. It cannot see, and nothing
-/// else here does:
+/// range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
+/// [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see, and nothing else here does:
 ///
 /// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
 ///   mid-scale can let the true current rise to several times the trip level;
 /// - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
 /// - a control interrupt that does not come: the last command stands;
 /// - heat, shoot-through, and what is shorter than a control period;
-/// - a bus voltage, be it too high for the switches.
+/// - a bus voltage that nobody measures, or that rises between two calls of `set_bus`.
 ///
 /// So the board must have (a) a comparator of the current on the timer's break input, (b) a
 /// watchdog on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of
-/// the bus voltage, too.
+/// the bus voltage, too: all legs off end no voltage above the bus that the diodes pass on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Supervisor {
     mode: Mode,
     fault: Option<Fault>,
     /// Periods left in calibration or pre-charge.
     countdown: u16,
-    /// Last valid Hall code, if stalls are detected; 0 before the first.
+    /// Last Hall code that was not disturbed, if stalls are detected or codes bridged; 0 before the
+    /// first.
     hall_prev: u8,
+    /// Samples since then, bridged.
+    hall_gap: u16,
+    /// All samples that were bridged, at most [`MOST_GLITCHES`].
+    hall_glitches: u16,
     /// Periods under demand since the last Hall edge.
     stall_count: Word,
     /// Sums of calibration samples of the first and the second sensor, counts.
@@ -344,11 +381,16 @@ const fn follows(sector: u32, next: u32) -> bool {
     next == if sector == 6 { 1 } else { sector + 1 }
 }
 
+/// Count of bridged samples at which counting ends.
+pub(crate) const MOST_GLITCHES: u16 = 0x7fff;
+
 /// What a drive does in a period that passes no check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rest {
     /// All legs are in one state.
     Legs(LegState),
+    /// Control after all: the sample's disturbed Hall code is bridged.
+    Control,
     /// It brakes a fast rotor: control with the largest torque against this direction, 1 forward or
     /// -1 backward; at set-point 0 while the direction is unknown, 0.
     Against(Word),
@@ -357,7 +399,7 @@ pub enum Rest {
 impl Supervisor {
     /// Names of the state words, in the order of [`Self::words`]; `_a` is the first sensed phase,
     /// `_b` the second.
-    pub const NAMES: [&'static str; 13] = [
+    pub const NAMES: [&'static str; 15] = [
         "mode",
         "fault",
         "countdown",
@@ -367,6 +409,8 @@ impl Supervisor {
         "offset_b",
         "stall_count",
         "hall_prev",
+        "hall_gap",
+        "hall_glitches",
         "brake_hall",
         "brake_age",
         "brake_interval",
@@ -383,6 +427,8 @@ impl Supervisor {
             fault: None,
             countdown: 0,
             hall_prev: 0,
+            hall_gap: 0,
+            hall_glitches: 0,
             stall_count: Word(0),
             sums: [Word(0); 2],
             offsets: [
@@ -408,18 +454,43 @@ impl Supervisor {
         let [first, second] = sensors.phases.of(sample.adc);
         let counts = [first.into(), second.into()];
         let i = limits.sensed(sensors, counts, self.offsets);
-        let stalled = self.watch_stall(limits, sample.hall, is_demanded);
+        let hall = limits.hall_of(sample);
+        let is_sound = self.watch_hall(limits, hall);
+        let stalled = self.watch_stall(limits, hall, is_demanded);
         let is_fit = self.mode == Mode::Run
             && !limits.is_at_end(first)
             && !limits.is_at_end(second)
-            && is_hall_code(sample.hall)
+            && is_sound
             && !limits.is_over(i)
             && !stalled;
         is_fit.then(|| Checked {
             i: sensors.phases.a_and_b(i, third_of(i)),
-            hall: sample.hall.into(),
+            hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         })
+    }
+
+    /// Whether a Hall code is not disturbed.
+    #[inline]
+    fn is_sound(&self, limits: &Limits, hall: u8) -> bool {
+        // Codes of sectors side by side differ in one sensor.
+        let changed = hall ^ self.hall_prev;
+        let is_beside = changed & changed.wrapping_sub(1) == 0;
+        is_hall_code(hall) && (limits.hall_glitches == 0 || self.hall_prev == 0 || is_beside)
+    }
+
+    /// Follows the Hall code of a sample; whether it is not disturbed.
+    #[inline]
+    fn watch_hall(&mut self, limits: &Limits, hall: u8) -> bool {
+        let is_sound = self.is_sound(limits, hall);
+        if limits.hall_glitches != 0 && is_sound {
+            self.hall_gap = 0;
+            // Where stalls are detected, the code is kept with its edge.
+            if limits.stall_periods == 0 {
+                self.hall_prev = hall;
+            }
+        }
+        is_sound
     }
 
     /// Counts periods without a Hall edge under demand; true on a stall.
@@ -433,7 +504,7 @@ impl Supervisor {
         if limits.stall_periods == 0 {
             return false;
         }
-        let hall = if is_hall_code(hall) {
+        let hall = if self.is_sound(limits, hall) {
             hall
         } else {
             self.hall_prev
@@ -454,28 +525,34 @@ impl Supervisor {
     }
 
     /// A period without control, after a [`check`](Self::check) that gave no sample: continues
-    /// start-up, trips on a fault, brakes, and returns what the drive does instead. In the sample,
-    /// counts are clamped to the ADC's range, the current of a phase without a sensor to that of one
-    /// with a sensor, and an invalid Hall code is 0.
+    /// start-up, trips on a fault, bridges a disturbed Hall code, brakes, and returns what the drive
+    /// does instead. In the sample, counts are clamped to the ADC's range, the current of a phase
+    /// without a sensor to that of one with a sensor; a Hall code that is bridged is the last one, and
+    /// another that no sensors give is 0.
     pub fn rest(&mut self, limits: &Limits, sensors: &Sensors, sample: &Sample) -> (Checked, Rest) {
         let adc = sensors.phases.of(sample.adc);
         let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
         let i = limits.sensed(sensors, counts, self.offsets);
         let [least, most] = limits.currents;
         let third = third_of(i).min(most).max(least);
-        let has_code = is_hall_code(sample.hall);
+        let sampled = limits.hall_of(sample);
+        let is_sound = self.is_sound(limits, sampled);
+        let is_bridged = !is_sound && self.bridge(limits);
+        let hall = if is_bridged {
+            self.hall_prev
+        } else if is_hall_code(sampled) {
+            sampled
+        } else {
+            0
+        };
         let checked = Checked {
             i: sensors.phases.a_and_b(i, third),
-            hall: if has_code {
-                sample.hall.into()
-            } else {
-                Word(0)
-            },
+            hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         };
         let found = if adc.into_iter().any(|count| limits.is_at_end(count)) {
             Some(Fault::AdcRange)
-        } else if !has_code {
+        } else if !is_sound && !is_bridged {
             Some(Fault::Hall)
         } else if limits.is_over(i) {
             Some(Fault::OverCurrent)
@@ -489,12 +566,24 @@ impl Supervisor {
             return (checked, Rest::Legs(LegState::Off));
         }
         let rest = match self.mode {
+            Mode::Run if is_bridged => Rest::Control,
             Mode::Precharge => Rest::Legs(LegState::Low),
-            Mode::Brake => self.go_on_braking(limits, sample.hall),
+            Mode::Brake => self.go_on_braking(limits, hall),
             _ => Rest::Legs(LegState::Off),
         };
         self.start_up(limits, sensors, counts);
         (checked, rest)
+    }
+
+    /// Takes a sample with a disturbed Hall code as one more of a gap; false if the gap is too long, or
+    /// no code is known yet.
+    fn bridge(&mut self, limits: &Limits) -> bool {
+        let may = self.hall_prev != 0 && self.hall_gap < limits.hall_glitches;
+        if may {
+            self.hall_gap = self.hall_gap.saturating_add(1);
+            self.hall_glitches = self.hall_glitches.saturating_add(1).min(MOST_GLITCHES);
+        }
+        may
     }
 
     /// Calibration averages the counts of all its samples; then pre-charge counts its periods down.
@@ -557,8 +646,9 @@ impl Supervisor {
         };
     }
 
-    /// Turns all legs off until a reset. The first fault is kept.
-    fn trip(&mut self, fault: Fault) {
+    /// Turns all legs off until a reset, for a fault that a sample does not show. The first fault is
+    /// kept.
+    pub fn trip(&mut self, fault: Fault) {
         if self.mode != Mode::Tripped {
             self.fault = Some(fault);
         }
@@ -640,7 +730,7 @@ impl Supervisor {
 
     #[inline]
     pub(crate) const fn status_bits(&self) -> i32 {
-        Status::to_bits(self.mode, self.fault)
+        Status::to_bits(self.mode, self.fault, self.hall_glitches)
     }
 
     /// The state words, in the order of [`Self::NAMES`]. For verification.
@@ -659,6 +749,8 @@ impl Supervisor {
             offset_b.0,
             self.stall_count.0,
             self.hall_prev.into(),
+            self.hall_gap.into(),
+            self.hall_glitches.into(),
             turn.hall.into(),
             turn.age.0,
             turn.interval.0,
@@ -678,6 +770,8 @@ impl Supervisor {
             offset_b,
             stall_count,
             hall_prev,
+            hall_gap,
+            hall_glitches,
             turn_hall,
             age,
             interval,
@@ -688,6 +782,8 @@ impl Supervisor {
             fault: Fault::from_number(fault),
             countdown: countdown as u16,
             hall_prev: hall_prev as u8,
+            hall_gap: hall_gap as u16,
+            hall_glitches: hall_glitches as u16,
             stall_count: Word(stall_count),
             sums: [Word(sum_a), Word(sum_b)],
             offsets: [Word(offset_a), Word(offset_b)],

@@ -225,8 +225,11 @@ mod tests {
             calibration_log2: 4,
             precharge_periods: 2,
             stall_periods: 0,
+            hall_inverted: 0,
+            hall_glitches: 0,
             sectors: 0x0423_6510,
             brake_periods: 0,
+            bus_counts: [0, u16::MAX],
         };
         const UNITS: Units = Units {
             ampere: UNIT,
@@ -266,14 +269,14 @@ mod tests {
         let record = TripRecord::<Law>::new();
         let supervisor = Supervisor::new(&Law::LIMITS, &Law::SENSORS);
         let keep = |number| record.keep(&trip(number), &supervisor, &Kept(number));
-        let mut words = [0; 14];
+        let mut words = [0; 16];
         assert_eq!(record.read(&mut words), None);
         keep(1);
         assert_eq!(record.read(&mut words), Some(trip(1)));
-        assert_eq!((words[5], words[13]), (2048, 1));
+        assert_eq!((words[5], words[15]), (2048, 1));
         assert_eq!(record.read_while(|| keep(2)), None);
         assert_eq!(record.read(&mut words), Some(trip(2)));
-        assert_eq!(words[13], 2);
+        assert_eq!(words[15], 2);
         assert_eq!(record.read_while(|| record.forget()), None);
         assert_eq!(record.read(&mut words), None);
         // What interrupts the writer finds a number that says so.

@@ -50,8 +50,11 @@ impl Control for SixStep {
         calibration_log2: 4,
         precharge_periods: 2,
         stall_periods: 0,
+        hall_inverted: 0,
+        hall_glitches: 0,
         sectors: 0x0423_6510,
         brake_periods: 0,
+        bus_counts: [0, u16::MAX],
     };
     const UNITS: Units = Units {
         ampere: UNIT,

@@ -141,6 +141,16 @@ const SHARED: &[Row] = &[
                     ("inverter", "bus_adc_range", BUS_RANGE),
                 ],
             ),
+            (
+                "untripped",
+                &[
+                    ("inverter", "v_bus", "\"measured\""),
+                    ("inverter", "bus_adc_bits", "12"),
+                    ("inverter", "bus_adc_range", BUS_RANGE),
+                    ("inverter", "over_voltage", "\"0 V\""),
+                    ("inverter", "under_voltage", "\"0 V\""),
+                ],
+            ),
         ],
     ),
 ];
@@ -191,6 +201,24 @@ const LOOSE: &[Row] = &[
                 &[
                     ("inverter", "stall_timeout", "\"100 ms\""),
                     ("inverter", "hall_timer_clock", "\"505 kHz\""),
+                ],
+            ),
+        ],
+    ),
+    (
+        "halls",
+        &[
+            ("plain", &[]),
+            ("bridged", &[("inverter", "hall_glitches", "3")]),
+            (
+                "60_degrees",
+                &[("motor", "hall_codes", "[0, 1, 3, 7, 6, 4]")],
+            ),
+            (
+                "bridged_60_degrees",
+                &[
+                    ("motor", "hall_codes", "[7, 3, 1, 0, 4, 6]"),
+                    ("inverter", "hall_glitches", "1"),
                 ],
             ),
         ],

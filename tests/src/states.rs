@@ -108,14 +108,19 @@ impl<'a> States<'a> {
         }
     }
 
-    /// A bus voltage, ADC counts.
+    /// A bus voltage, ADC counts; mostly one that trips nothing.
     pub fn bus_counts(&mut self) -> u16 {
-        match self.random.u8(..4) {
+        let [least, most] = self.limits.bus_counts;
+        match self.random.u8(..16) {
             0 => self.random.u16(..),
-            1 => self.random.u16(4090..4100),
+            1 => {
+                let end = if self.random.bool() { least } else { most };
+                end.saturating_add_signed(self.random.i16(-1..=1))
+            }
+            2..=4 => self.random.u16(4090..4100).clamp(least, most),
             // The lowest possible one.
-            2 => 0,
-            _ => self.random.u16(..4096),
+            5..=7 => least,
+            _ => self.random.u16(least..=most.min(4095)),
         }
     }
 
@@ -149,8 +154,8 @@ impl<'a> States<'a> {
     /// Writes a state; returns a sample for it.
     pub fn fill(&mut self, words: &mut [i32]) -> Sample {
         let mut hall = match self.random.u8(..64) {
-            0 => 0,
-            1 => 7,
+            0 => self.limits.hall_inverted,
+            1 => self.limits.hall_inverted ^ 7,
             2 => self.codes[self.random.usize(..6)] | 8,
             _ => self.codes[self.random.usize(..6)],
         };
@@ -176,7 +181,8 @@ impl<'a> States<'a> {
             && let Some(place) = self.place("hall_prev")
         {
             let (low, high) = self.ranges[place];
-            words[place] = i32::from(hall).clamp(low, high);
+            let upright = hall ^ self.limits.hall_inverted;
+            words[place] = i32::from(upright).clamp(low, high);
         }
         // Equal or opposite phases put maxima and differences on their ties.
         for index in 0..words.len() {
@@ -556,14 +562,18 @@ fn supervisor_ranges(
     let word = |offset: u16| i32::from(offset) << limits.current_bits;
     let [first, second] = offsets.map(|[least, most]| (word(least), word(most)));
     Supervisor::NAMES.map(|name| match name {
-        "mode" | "fault" => (0, 5),
+        "mode" => (0, 5),
+        "fault" => (0, 7),
         "countdown" => (0, samples.max(limits.precharge_periods.into())),
         "sum_a" | "sum_b" => (0, full),
         "offset_a" => first,
         "offset_b" => second,
         "stall_count" => (0, limits.stall_periods),
-        "hall_prev" if limits.stall_periods > 0 => (0, 6),
+        "hall_prev" if limits.stall_periods > 0 || limits.hall_glitches > 0 => (0, 6),
         "hall_prev" => (0, 0),
+        "hall_gap" => (0, limits.hall_glitches.into()),
+        "hall_glitches" if limits.hall_glitches > 0 => (0, 0x7fff),
+        "hall_glitches" => (0, 0),
         "brake_hall" => (0, 6),
         "brake_age" | "brake_interval" => (0, limits.brake_periods),
         "brake_direction" => (-1, 1),

@@ -15,6 +15,8 @@ use rayon::prelude::*;
 trait Supervised {
     /// A period: the passed currents, or the number of the state of all legs if the drive rests.
     fn period(&mut self, adc: [u16; 3], hall: u8, is_demanded: bool) -> ([i32; 2], Option<i32>);
+    /// A period begins behind a call of `set_bus` with this count.
+    fn bus(&mut self, counts: u16);
     fn reset(&mut self);
     fn calibrate(&mut self);
     fn precharge(&mut self);
@@ -50,12 +52,17 @@ macro_rules! new {
                                 checked,
                                 match rest {
                                     $module::Rest::Legs(leg) => Some(leg as i32),
-                                    $module::Rest::Against(_) => None,
+                                    $module::Rest::Control | $module::Rest::Against(_) => None,
                                 },
                             )
                         }
                     };
                 ([checked.i_a().0, checked.i_b().0], leg)
+            }
+            fn bus(&mut self, counts: u16) {
+                if let Some(fault) = self.1.bus_fault(counts) {
+                    self.0.trip(fault);
+                }
             }
             fn reset(&mut self) {
                 self.0.reset(&self.1, &self.2);
@@ -94,8 +101,11 @@ macro_rules! new {
                 calibration_log2: limits.calibration_log2,
                 precharge_periods: limits.precharge_periods,
                 stall_periods: limits.stall_periods,
+                hall_inverted: limits.hall_inverted,
+                hall_glitches: limits.hall_glitches,
                 sectors: limits.sectors,
                 brake_periods: limits.brake_periods,
+                bus_counts: limits.bus_counts,
             };
             let sensors = $module::Sensors {
                 phases: match sensors.phases {
@@ -133,7 +143,7 @@ mod planted {
 }
 
 /// Drives that together use everything of a supervisor. Their laws store the last currents.
-const DRIVES: [Drive; 3] = [
+const DRIVES: [Drive; 4] = [
     Drive {
         kind: "pdcc",
         motor: "hoverboard-hub",
@@ -150,6 +160,16 @@ const DRIVES: [Drive; 3] = [
         settings: &[
             ("word", "16"),
             ("stall_timeout", "100ms"),
+            ("start_up", "short"),
+            ("halls", "bridged"),
+        ],
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "trivedi-keshri-660w",
+        settings: &[
+            ("v_bus", "measured"),
+            ("halls", "bridged_60_degrees"),
             ("start_up", "short"),
         ],
     },
@@ -217,6 +237,7 @@ impl Sound {
             match action {
                 Some(Action::SetCurrent(bits)) => pair.model.set_current(bits),
                 Some(Action::SetTorque(bits)) => pair.model.set_torque(bits),
+                Some(Action::SetBus(counts)) => pair.set_bus(counts),
                 Some(Action::Reset) => pair.reset(),
                 Some(Action::Calibrate) => pair.calibrate(),
                 Some(Action::Precharge) => pair.precharge(),
@@ -249,6 +270,7 @@ impl Sound {
                 3 => pair.stop(Stop::Coast),
                 4 => pair.stop(Stop::Brake),
                 5 => pair.stop(Stop::Resume),
+                6 if pair.model.has_measured_bus() => pair.set_bus(states.bus_counts()),
                 _ => {}
             }
             if !pair.is_same(&sample) {
@@ -281,6 +303,11 @@ impl Pair {
                 .map(|name| place(name).expect("a law with currents")),
             legs: hexagen::Legs::OFF,
         }
+    }
+
+    fn set_bus(&mut self, counts: u16) {
+        self.model.set_bus(counts);
+        self.supervisor.bus(counts);
     }
 
     fn reset(&mut self) {

@@ -115,14 +115,16 @@ fn limits() -> impl Strategy<Value = Limits> {
             any::<[i32; 2]>(),
         ),
         (number(), any::<u16>(), prop_oneof![Just(0), any::<i32>()]),
-        (any::<u32>(), any::<i32>()),
+        (any::<u8>(), any::<u16>()),
+        (any::<u32>(), any::<i32>(), any::<[u16; 2]>()),
     )
         .prop_map(
             |(
                 (adc_max, adc_inverted, current_bits),
                 (offset, offsets, trip, currents),
                 (calibration_log2, precharge_periods, stall_periods),
-                (sectors, brake_periods),
+                (hall_inverted, hall_glitches),
+                (sectors, brake_periods, bus_counts),
             )| Limits {
                 adc_max,
                 adc_inverted,
@@ -134,8 +136,11 @@ fn limits() -> impl Strategy<Value = Limits> {
                 calibration_log2,
                 precharge_periods,
                 stall_periods,
+                hall_inverted,
+                hall_glitches,
                 sectors,
                 brake_periods,
+                bus_counts,
             },
         )
 }
@@ -273,10 +278,10 @@ proptest! {
         let bus = ToldBus::<2, { i32::MIN }>::new(words);
         for _ in 0..periods {
             bus.pass_period();
-            black_box((bus.tell(words), bus.read(), bus.is_stale()));
+            black_box((bus.tell(words, None), bus.read(), bus.is_stale()));
         }
         FixedBus.pass_period();
-        black_box((FixedBus.tell(()), FixedBus.read(), FixedBus.is_stale()));
+        black_box((FixedBus.tell((), None), FixedBus.read(), FixedBus.is_stale()));
     }
 
     #[test]

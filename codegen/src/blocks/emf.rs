@@ -274,7 +274,7 @@ pub fn quasi_square_reference<'b>(
     let (row, index, places, by) = match at {
         Corner::Sector(sector) => ("sector", sector, [1, 2, 3, 4, 5, 6], "in sectors 1 to 6"),
         Corner::HallCode(code) => {
-            let codes = l.spec.motor.hall_codes;
+            let codes = l.spec.motor.upright_codes();
             let places = codes.map(|code| usize::from(code & 7));
             ("hall", code, places, "by Hall code")
         }

@@ -302,6 +302,7 @@ impl<'b> BusWords<'b> {
             adc_bits,
             min,
             max,
+            ..
         } = l.spec.inverter.bus
         else {
             return;

@@ -54,9 +54,12 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
         calibration_log2: inverter.calibration_log2,
         precharge_periods: inverter.precharge_periods as u16,
         stall_periods: inverter.stall_periods as i32,
+        hall_inverted: spec.motor.hall_inverted(),
+        hall_glitches: inverter.hall_glitches as u16,
         sectors: (spec.hall_sectors().into_iter().rev())
             .fold(0, |word, sector| word << 4 | u32::from(sector)),
         brake_periods: spec.brake_periods() as i32,
+        bus_counts: inverter.bus_counts(),
         sensors: Sensors {
             phases: match inverter.sensed_phases {
                 spec::SensedPhases::Bc => SensedPhases::Bc,

@@ -123,6 +123,12 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
         }
     });
+    if inverter.hall_glitches > 0 {
+        lines.push(format!(
+            "A disturbed Hall code is bridged for {} samples in a row, and trips it then.",
+            inverter.hall_glitches
+        ));
+    }
     lines.push(match spec.brake_periods() {
         0 => "At any speed `brake()` shorts the motor, which takes at most `max_current` then."
             .to_owned(),
@@ -134,7 +140,25 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             )
         }
     });
-    if let BusSource::Measured { min, max, .. } = inverter.bus {
+    if let BusSource::Measured {
+        min,
+        max,
+        under,
+        over,
+        ..
+    } = inverter.bus
+    {
+        let levels = [(over, "above"), (under, "below")].into_iter();
+        let levels: Vec<String> = levels
+            .filter(|(level, _)| *level > 0.0)
+            .map(|(level, way)| format!("{way} {}", engineering(level, "V")))
+            .collect();
+        if !levels.is_empty() {
+            lines.push(format!(
+                "A bus voltage {} trips it, when `set_bus` tells so.",
+                levels.join(" or ")
+            ));
+        }
         lines.push(format!(
             "The bus voltage is {} until the first `set_bus`, and clamped to {} to {}.",
             engineering(inverter.v_bus, "V"),

@@ -67,10 +67,10 @@ impl Spec {
         (FRAC_PI_3 / omega_e / self.inverter.t_s).ceil() as u32
     }
 
-    /// Sector 1 to 6 by Hall code; 0 for invalid codes.
+    /// Sector 1 to 6 by Hall code of which no sensor is inverted; 0 for invalid codes.
     pub fn hall_sectors(&self) -> [u8; 8] {
         let mut sectors = [0; 8];
-        for (sector, &code) in (1..).zip(&self.motor.hall_codes) {
+        for (sector, code) in (1..).zip(self.motor.upright_codes()) {
             sectors[usize::from(code & 7)] = sector;
         }
         sectors
@@ -124,6 +124,24 @@ pub struct MotorSpec {
     pub hall_codes: [u8; 6],
 }
 
+impl MotorSpec {
+    /// Hall sensors that the drive inverts first, as bits of the code: one of sensors that stand 60
+    /// degrees apart, so that their codes become those of sensors 120 degrees apart, 001 to 110.
+    pub fn hall_inverted(&self) -> u8 {
+        // The two codes that are missing differ in all three sensors.
+        let missing = (0..8).filter(|code| !self.hall_codes.contains(code));
+        missing
+            .min_by_key(|code: &u8| code.count_ones())
+            .unwrap_or(0)
+    }
+
+    /// The Hall codes of sectors S1 to S6 with these sensors inverted.
+    pub fn upright_codes(&self) -> [u8; 6] {
+        let inverted = self.hall_inverted();
+        self.hall_codes.map(|code| code ^ inverted)
+    }
+}
+
 /// Where the bus voltage comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BusSource {
@@ -139,6 +157,10 @@ pub enum BusSource {
         min: f64,
         /// Upper limit, volt.
         max: f64,
+        /// Voltage below which the drive trips, volt; 0 for none.
+        under: f64,
+        /// Voltage above which the drive trips, volt; 0 for none.
+        over: f64,
     },
 }
 
@@ -209,6 +231,8 @@ pub struct InverterSpec {
     pub maximum_speed: f64,
     /// Periods without a Hall edge, under current demand, that count as a stall; 0 switches it off.
     pub stall_periods: u32,
+    /// Samples in a row with a disturbed Hall code that are bridged; 0 for none.
+    pub hall_glitches: u32,
     /// Base-2 logarithm of the samples averaged by offset calibration (0 to 12).
     pub calibration_log2: u32,
     /// Periods of bootstrap pre-charge, 0 to 65535.
@@ -244,6 +268,29 @@ impl InverterSpec {
             BusSource::Fixed => self.v_bus,
             BusSource::Measured { max, .. } => max,
         }
+    }
+
+    /// Least and greatest count of the bus ADC without a fault. The greatest count of all is one, as
+    /// the voltage may be any above it.
+    pub fn bus_counts(&self) -> [u16; 2] {
+        let BusSource::Measured {
+            gain,
+            adc_bits,
+            under,
+            over,
+            ..
+        } = self.bus
+        else {
+            return [0, u16::MAX];
+        };
+        let full = f64::from((1_u32 << adc_bits) - 1);
+        // Decimal units may round a whole number.
+        let least = (under / gain - 1e-6).ceil().max(0.0);
+        let most = (over / gain + 1e-6).floor().min(full - 1.0);
+        [
+            least as u16,
+            if over > 0.0 { most as u16 } else { u16::MAX },
+        ]
     }
 
     /// Largest count of the phase-current ADC.

@@ -47,12 +47,17 @@ impl Spec {
                 adc_bits,
                 min,
                 max,
+                ..
             } => {
                 text.word("bus", "measured");
                 text.number("bus_gain", gain);
                 text.number("bus_adc_bits", adc_bits);
                 text.number("bus_min", min);
                 text.number("bus_max", max);
+                let counts = inverter.bus_counts();
+                if counts != [0, u16::MAX] {
+                    text.number("bus_counts", counts);
+                }
             }
         }
         text.number("t_s", inverter.t_s);
@@ -80,6 +85,9 @@ impl Spec {
         text.number("rev_min", self.rev_min());
         text.number("omega_max", inverter.maximum_speed);
         text.number("stall_periods", inverter.stall_periods);
+        if inverter.hall_glitches > 0 {
+            text.number("hall_glitches", inverter.hall_glitches);
+        }
         text.number("brake_periods", self.brake_periods());
         text.number("calibration_log2", inverter.calibration_log2);
         text.number("precharge_periods", inverter.precharge_periods);
@@ -209,6 +217,7 @@ mod tests {
                 minimum_speed: 4.0,
                 maximum_speed: 314.0,
                 stall_periods: 0,
+                hall_glitches: 0,
                 calibration_log2: 8,
                 precharge_periods: 20,
             },

@@ -76,6 +76,8 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("bus_adc_range", &[D::Voltage], 1.0, 4000.0, "80 V"),
     quantity("bus_min", &[D::Voltage], 0.5, 2000.0, "36 V"),
     quantity("bus_max", &[D::Voltage], 1.0, 4000.0, "60 V"),
+    quantity("over_voltage", &[D::Voltage], 0.0, 4000.0, "58 V"),
+    quantity("under_voltage", &[D::Voltage], 0.0, 2000.0, "38 V"),
     quantity("f_pwm", &[D::Frequency], 500.0, 500e3, "20 kHz"),
     quantity("sampling_time", &[D::Time], 2e-6, 2e-3, "50 us"),
     quantity("timer_clock", &[D::Frequency], 100e3, 1e9, "72 MHz"),
@@ -116,6 +118,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     ),
     quantity("maximum_speed", &[D::Speed], RPM, 3e5 * RPM, "3000 rpm"),
     quantity("stall_timeout", &[D::Time], 0.0, 60.0, "500 ms"),
+    integer("hall_glitches", 0, 1000, "3"),
     integer("calibration_samples", 1, 4096, "256"),
     quantity("precharge", &[D::Time], 0.0, 10.0, "1 ms"),
 ];

@@ -58,7 +58,7 @@ static void none_pend(void)
 
 static void period(void)
 {
-    hexagen_pass_period(&bus, STALE);
+    CHECK(hexagen_pass_period(&bus, STALE) == HEXAGEN_FAULT_NONE);
 }
 
 static bool is_stale(void)
@@ -82,7 +82,7 @@ static int told(void)
 
 static void set(int call)
 {
-    hexagen_tell_bus(&bus, call, 1 - 10 * call);
+    hexagen_tell_bus(&bus, call, 1 - 10 * call, HEXAGEN_SOUND);
 }
 
 static void set_3(void)
@@ -113,6 +113,19 @@ static void shows_that_calls_cease(void)
             CHECK(is_stale());
         }
     }
+}
+
+static void passes_a_fault_on_once(void)
+{
+    start();
+    set(2);
+    hexagen_tell_bus(&bus, 3, -29, (int32_t)HEXAGEN_FAULT_OVER_VOLTAGE);
+    CHECK(hexagen_pass_period(&bus, STALE) == HEXAGEN_FAULT_OVER_VOLTAGE);
+    CHECK(!is_stale() && told() == 3);
+    period();
+    hexagen_tell_bus(&bus, 3, -29, (int32_t)HEXAGEN_FAULT_UNDER_VOLTAGE);
+    set(2);
+    period();
 }
 
 /* Abandons a call before an access; false if the call has no such access. */
@@ -303,6 +316,7 @@ static void who_asks_is_not_torn_by_another_who_asks(void)
 int main(void)
 {
     shows_that_calls_cease();
+    passes_a_fault_on_once();
     shows_a_call_that_ended_for_good();
     never_tears_words_that_belong_together();
     signals_are_of_one_period();

@@ -145,7 +145,39 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "exceeds(third, limits->trip)",
             "exceeds(-third, INT32_MAX)",
         ),
-        ("passes ==", "&& hexagen_is_hall_code(sample->hall)", ""),
+        (
+            "passes ==",
+            "count_second) && is_sound",
+            "count_second) && (is_sound || true)",
+        ),
+        (
+            "line",
+            "sample->hall ^ limits->hall_inverted",
+            "sample->hall",
+        ),
+        ("line", "supervisor->hall_prev == 0U || is_beside", "true"),
+        ("line", "supervisor->hall_gap = 0;\n        /*", "/*"),
+        ("line", "hall_gap >= limits", "hall_gap > limits"),
+        (
+            "line",
+            "supervisor->hall_prev == 0U || supervisor->hall_gap",
+            "supervisor->hall_gap",
+        ),
+        (
+            "line",
+            "< HEXAGEN_MOST_GLITCHES",
+            "<= HEXAGEN_MOST_GLITCHES",
+        ),
+        (
+            "line",
+            "counts > limits->bus_most",
+            "counts >= limits->bus_most",
+        ),
+        (
+            "line",
+            "counts < limits->bus_least",
+            "counts <= limits->bus_least",
+        ),
         (
             "line",
             "supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is",
@@ -188,8 +220,8 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         (
             "rested.leg ==",
-            "if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {",
-            "if (supervisor->mode == HEXAGEN_MODE_CALIBRATE) {",
+            "if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {\n        rested",
+            "if (supervisor->mode == HEXAGEN_MODE_CALIBRATE) {\n        rested",
         ),
         ("line", "sector + 1U);", "sector + 2U);"),
         ("line", "supervisor->brake_direction = -1;", ""),
@@ -223,10 +255,14 @@ fn limits_that_contradict_each_other_do_not_compile() {
         "8",
         "20",
         "0",
+        "0",
+        "0",
         "0x04236510",
         "0",
+        "0",
+        "65535",
     ];
-    let compiles = |arguments: [&str; 14]| {
+    let compiles = |arguments: [&str; 18]| {
         let folder = tempfile::tempdir().expect("a folder");
         let arguments = arguments.join(", ");
         let test = format!(
@@ -259,8 +295,8 @@ fn limits_that_contradict_each_other_do_not_compile() {
         (9, "16"),
         (11, "-1"),
         (11, "2147483647"),
-        (13, "-1"),
-        (13, "2147483647"),
+        (15, "-1"),
+        (15, "2147483647"),
     ] {
         let mut wrong = sound;
         wrong[place] = value;
@@ -282,10 +318,15 @@ fn limits_that_contradict_each_other_do_not_compile() {
         "0",
         "0",
         "0",
+        "0",
+        "0",
+        "0",
+        "65535",
     ];
     assert!(!compiles(wide));
     let sums = [
-        "65535", "false", "0", "1", "1", "1", "9", "-1", "65534", "15", "20", "0", "0", "0",
+        "65535", "false", "0", "1", "1", "1", "9", "-1", "65534", "15", "20", "0", "0", "0", "0",
+        "0", "0", "65535",
     ];
     assert!(compiles(sums));
 }
@@ -340,7 +381,8 @@ fn shared_state_is_consistent_under_every_interrupt() {
             "spare = (bus->published == 0) ? 1 : 0",
             "spare = (bus->published == 0) ? 0 : 1",
         ),
-        ("    bus->told = 1;\n", ""),
+        ("bus->told = judged;", "bus->told = (judged == 0) ? 1 : 0;"),
+        ("bus->told = judged;", "bus->told = judged | HEXAGEN_SOUND;"),
         ("        bus->told = 0;\n", ""),
         ("bus->storing = storing - 1", "bus->storing = storing"),
         ("if (turn == 0)", "if (turn != 3)"),

@@ -5,30 +5,34 @@
 #include <stdio.h>
 
 HEXAGEN_LIMITS(rising, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
-    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0,
-    0x04236510, 5);
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0, 0,
+    0x04236510, 5, 0, 65535);
 HEXAGEN_LIMITS(falling, 4095, true, 18, 2048, 1946, 2150, INT32_C(400000001),
-    (INT32_C(1946) - 4095) * 262144, INT32_C(2150) * 262144, 0, 0, 5,
-    0x04236510, 0);
-HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 15, 0, 0,
-    0x04236510, 7);
+    (INT32_C(1946) - 4095) * 262144, INT32_C(2150) * 262144, 0, 0, 5, 0, 0,
+    0x04236510, 0, 0, 65535);
+HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 15, 0, 0, 0, 0,
+    0x04236510, 7, 0, 65535);
 HEXAGEN_LIMITS(wide, 65535, false, 14, 32768, 32000, 33000, INT32_C(500000000),
-    -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7,
-    0x04236510, 7);
+    -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7, 0, 0,
+    0x04236510, 7, 0, 65535);
+/* Sensors 60 degrees apart, up to two samples bridged, a bus of 1000 to 3000 counts. */
+HEXAGEN_LIMITS(bridging, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 2, 2, 0x04236510, 5, 1000,
+    3000);
 HEXAGEN_LIMITS_OF(of_b_and_c, 4095, false, 18, 2048, 1946, 2150, INT32_C(400000001),
-    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0x04236510, 5,
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0, 0, 0x04236510, 5, 0, 65535,
     HEXAGEN_SENSED_BC, false, 2048, 1946, 2150);
 HEXAGEN_LIMITS_OF(of_c_and_a, 4095, false, 10, 2048, 1946, 2150, INT32_C(2000000),
-    -INT32_C(2195) * 1024, INT32_C(2202) * 1024, 8, 20, 0, 0x04236510, 5,
+    -INT32_C(2195) * 1024, INT32_C(2202) * 1024, 8, 20, 0, 0, 0, 0x04236510, 5, 0, 65535,
     HEXAGEN_SENSED_CA, true, 2000, 1900, 2202);
 HEXAGEN_LIMITS(loose, 4095, true, 3, 3000, 0, 4095, INT32_C(2147483647), -INT32_C(4095) * 8,
-    INT32_C(4095) * 8, 8, 1, 0, 0x04236510, 7);
+    INT32_C(4095) * 8, 8, 1, 0, 0, 0, 0x04236510, 7, 0, 65535);
 
 static const hexagen_limits *const all[] = { &rising, &falling, &coarse, &wide, &of_b_and_c,
     &of_c_and_a, &loose };
 
 static unsigned long passed;
-static unsigned long tripped[6];
+static unsigned long tripped[8];
 
 static int64_t size(int64_t x)
 {
@@ -124,7 +128,7 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
     return 0;
 }
 
-#define BRAKES(what)                                      \
+#define STATES(what)                                      \
     do {                                                  \
         if (!(what)) {                                    \
             printf("line %d: %s\n", __LINE__, #what);     \
@@ -141,9 +145,9 @@ static int rests(hexagen_supervisor *supervisor, uint16_t hall, unsigned periods
     for (unsigned period = 0; period < periods; period++) {
         hexagen_checked checked;
         hexagen_rested rested;
-        BRAKES(!hexagen_check(supervisor, all[0], &sample, &set_point, &checked));
+        STATES(!hexagen_check(supervisor, all[0], &sample, &set_point, &checked));
         rested = hexagen_rest(supervisor, all[0], &sample, &checked);
-        BRAKES(rested.leg == leg && rested.is_controlled == is_controlled
+        STATES(rested.leg == leg && rested.is_controlled == is_controlled
             && rested.against == against);
     }
     return 0;
@@ -155,27 +159,84 @@ static int brakes(void)
     hexagen_supervisor supervisor;
     hexagen_start(&supervisor, all[0]);
     hexagen_coast(&supervisor);
-    BRAKES(supervisor.mode == HEXAGEN_MODE_COAST);
-    BRAKES(rests(&supervisor, 5, 9, HEXAGEN_LEG_OFF, false, 0) == 0);
-    BRAKES(hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_RUN);
-    BRAKES(!hexagen_resume(&supervisor));
+    STATES(supervisor.mode == HEXAGEN_MODE_COAST);
+    STATES(rests(&supervisor, 5, 9, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_RUN);
+    STATES(!hexagen_resume(&supervisor));
     hexagen_brake(&supervisor);
-    BRAKES(rests(&supervisor, 1, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
-    BRAKES(rests(&supervisor, 1, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
-    BRAKES(rests(&supervisor, 5, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
-    BRAKES(rests(&supervisor, 4, 3, HEXAGEN_LEG_OFF, true, 1) == 0);
-    BRAKES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
-    BRAKES(rests(&supervisor, 3, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
-    BRAKES(rests(&supervisor, 2, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    STATES(rests(&supervisor, 1, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, 1, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, 5, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, 4, 3, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, 3, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, 2, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
     hexagen_brake(&supervisor);
-    BRAKES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
-    BRAKES(rests(&supervisor, 6, 2, HEXAGEN_LEG_LOW, false, 0) == 0);
-    BRAKES(rests(&supervisor, 0, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
-    BRAKES(supervisor.fault == HEXAGEN_FAULT_HALL);
+    STATES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    STATES(rests(&supervisor, 6, 2, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, 0, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(supervisor.fault == HEXAGEN_FAULT_HALL);
     hexagen_coast(&supervisor);
     hexagen_brake(&supervisor);
-    BRAKES(!hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_TRIPPED);
-    BRAKES(hexagen_reset(&supervisor, all[0]) && supervisor.brake_direction == 0);
+    STATES(!hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_TRIPPED);
+    STATES(hexagen_reset(&supervisor, all[0]) && supervisor.brake_direction == 0);
+    return 0;
+}
+
+/* The code that a period of control takes; -1 for a trip. */
+static int follows(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+{
+    const volatile int32_t set_point = 0;
+    const hexagen_sample sample = hexagen_with_hall(2048, 2048, hall);
+    hexagen_checked checked;
+    if (!hexagen_check(supervisor, limits, &sample, &set_point, &checked)) {
+        const hexagen_rested rested = hexagen_rest(supervisor, limits, &sample, &checked);
+        if (!rested.is_controlled) {
+            return -1;
+        }
+    }
+    return checked.hall;
+}
+
+/* Codes 2, 3, 1, 5, 4, 6 are sampled as 0, 1, 3, 7, 6, 4; up to two disturbed ones are bridged. */
+static int bridges(void)
+{
+    static const uint16_t sampled[] = { 0, 1, 3, 2, 5, 7, 0, 6, 6, 4, 9, 3, 5 };
+    static const int taken[] = { 2, 3, 1, 1, 1, 5, 5, 4, 4, 6, 6, 6, -1 };
+    hexagen_supervisor supervisor;
+    hexagen_status status;
+    hexagen_start(&supervisor, &bridging);
+    for (unsigned sample = 0; sample < sizeof taken / sizeof taken[0]; sample++) {
+        STATES(follows(&supervisor, &bridging, sampled[sample]) == taken[sample]);
+    }
+    status = hexagen_status_of(hexagen_status_word(&supervisor), false);
+    STATES(status.mode == HEXAGEN_MODE_TRIPPED && status.fault == HEXAGEN_FAULT_HALL);
+    STATES(status.hall_glitches == 5);
+    STATES(hexagen_reset(&supervisor, &bridging) && supervisor.hall_glitches == 0);
+    STATES(follows(&supervisor, &bridging, 2) == -1);
+    STATES(hexagen_reset(&supervisor, &bridging));
+    supervisor.hall_prev = 1;
+    supervisor.hall_glitches = 32766;
+    STATES(follows(&supervisor, &bridging, 2) == 1 && follows(&supervisor, &bridging, 2) == 1);
+    status = hexagen_status_of(hexagen_status_word(&supervisor), false);
+    STATES(status.hall_glitches == 32767 && status.fault == HEXAGEN_FAULT_NONE);
+    return 0;
+}
+
+static int judges_the_bus(void)
+{
+    hexagen_supervisor supervisor;
+    STATES(hexagen_judge_bus(&bridging, 1000) == HEXAGEN_SOUND);
+    STATES(hexagen_judge_bus(&bridging, 3000) == HEXAGEN_SOUND);
+    STATES(hexagen_judge_bus(&bridging, 999) == (int32_t)HEXAGEN_FAULT_UNDER_VOLTAGE);
+    STATES(hexagen_judge_bus(&bridging, 3001) == (int32_t)HEXAGEN_FAULT_OVER_VOLTAGE);
+    STATES(hexagen_judge_bus(&rising, 0) == HEXAGEN_SOUND);
+    STATES(hexagen_judge_bus(&rising, 65535) == HEXAGEN_SOUND);
+    hexagen_start(&supervisor, &bridging);
+    hexagen_trip(&supervisor, HEXAGEN_FAULT_OVER_VOLTAGE);
+    hexagen_trip(&supervisor, HEXAGEN_FAULT_UNDER_VOLTAGE);
+    STATES(supervisor.mode == HEXAGEN_MODE_TRIPPED);
+    STATES(supervisor.fault == HEXAGEN_FAULT_OVER_VOLTAGE);
     return 0;
 }
 
@@ -193,7 +254,7 @@ static hexagen_sample sample_of(
 
 int main(void)
 {
-    if (brakes() != 0) {
+    if (brakes() != 0 || bridges() != 0 || judges_the_bus() != 0) {
         return 1;
     }
     for (unsigned set = 0; set < sizeof all / sizeof all[0]; set++) {

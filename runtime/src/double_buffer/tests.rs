@@ -4,7 +4,7 @@ extern crate std;
 
 use super::{Banks, FIRST, NO, Place};
 use crate::arith::Word;
-use crate::bus_watch::{self, Watch};
+use crate::bus_watch::{self, SOUND, Watch};
 use std::boxed::Box;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -227,7 +227,7 @@ impl<'t> Told<'t> {
 
     fn set_bus(&self, value: i32) {
         if self.bus.store([Word(value); 3], GIVEN_UP) {
-            self.watch.told();
+            self.watch.told(SOUND);
         }
     }
 

@@ -33,8 +33,11 @@ const fn limits(adc_bits: u32, adc_inverted: bool, current_bits: u32) -> Limits 
         calibration_log2: 4,
         precharge_periods: 3,
         stall_periods: 20,
+        hall_inverted: 0,
+        hall_glitches: 0,
         sectors: 0x0423_6510,
         brake_periods: 5,
+        bus_counts: [0, u16::MAX],
     }
 }
 
@@ -449,6 +452,112 @@ fn stalls_are_counted_between_codes() {
     assert_eq!(supervisor, Supervisor::new(&unwatched, &Sensors::AB));
 }
 
+/// A period of control: its code for the law, or the fault.
+fn followed(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> Result<i32, Fault> {
+    let sample = Sample::with_hall([limits.offset; 2], hall);
+    if let Some(checked) = supervisor.check(limits, &Sensors::AB, &sample, || false) {
+        return Ok(checked.hall().0);
+    }
+    let (checked, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
+    match supervisor.status().fault {
+        Some(fault) => Err(fault),
+        None => {
+            assert_eq!(rest, Rest::Control);
+            Ok(checked.hall().0)
+        }
+    }
+}
+
+#[test]
+fn a_disturbed_hall_code_is_bridged_by_the_last_one_so_long_and_no_longer() {
+    let limits = Limits {
+        hall_glitches: 2,
+        ..limits(12, false, 17)
+    };
+    // No code, one that skips a sector, and more than three bits.
+    for disturbed in [0, 7, 6, 4, 9, 0xff] {
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+        let mut seen = |hall| followed(&mut supervisor, &limits, hall);
+        assert_eq!(
+            [1, disturbed, disturbed, 5].map(&mut seen),
+            [1, 1, 1, 5].map(Ok)
+        );
+        assert_eq!([0, 0, 1].map(&mut seen), [5, 5, 1].map(Ok));
+        assert_eq!([0, 7].map(&mut seen), [Ok(1), Ok(1)]);
+        assert_eq!(seen(disturbed), Err(Fault::Hall));
+        assert_eq!(supervisor.status().hall_glitches, 6);
+        supervisor.reset(&limits, &Sensors::AB);
+        assert_eq!(supervisor.status().hall_glitches, 0);
+        assert_eq!(followed(&mut supervisor, &limits, 6), Ok(6));
+    }
+    // Without a code there is nothing to bridge with.
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+    assert_eq!(followed(&mut supervisor, &limits, 0), Err(Fault::Hall));
+}
+
+#[test]
+fn counting_disturbed_codes_ends_and_does_not_begin_again() {
+    let limits = Limits {
+        hall_glitches: 1,
+        ..limits(12, false, 17)
+    };
+    let mut supervisor = Supervisor {
+        hall_prev: 1,
+        hall_glitches: 0x7ffe,
+        ..Supervisor::new(&limits, &Sensors::AB)
+    };
+    for _ in 0..3 {
+        assert_eq!(followed(&mut supervisor, &limits, 0), Ok(1));
+        assert_eq!(followed(&mut supervisor, &limits, 1), Ok(1));
+        assert_eq!(supervisor.status().hall_glitches, 0x7fff);
+        assert_eq!(supervisor.status().fault, None);
+    }
+}
+
+#[test]
+fn one_of_three_sensors_60_degrees_apart_is_inverted() {
+    let limits = Limits {
+        hall_inverted: 0b010,
+        ..limits(12, false, 17)
+    };
+    for (hall, code) in [(0, 2), (1, 3), (3, 1), (7, 5), (6, 4), (4, 6)] {
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+        assert_eq!(followed(&mut supervisor, &limits, hall), Ok(code));
+        for wrong in [0b010, 0b101, hall | 8] {
+            let mut supervisor = supervisor.clone();
+            let found = followed(&mut supervisor, &limits, wrong);
+            assert_eq!(found, Err(Fault::Hall), "{wrong}");
+        }
+    }
+}
+
+#[test]
+fn a_bus_voltage_beyond_its_counts_is_a_fault() {
+    let limits = Limits {
+        bus_counts: [1000, 3000],
+        ..limits(12, false, 17)
+    };
+    assert_eq!(
+        [1000, 3000].map(|counts| limits.bus_fault(counts)),
+        [None; 2]
+    );
+    assert_eq!(limits.bus_fault(999), Some(Fault::UnderVoltage));
+    assert_eq!(limits.bus_fault(3001), Some(Fault::OverVoltage));
+    let any = Limits {
+        bus_counts: [0, u16::MAX],
+        ..limits
+    };
+    assert_eq!([0, u16::MAX].map(|counts| any.bus_fault(counts)), [None; 2]);
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+    supervisor.trip(Fault::OverVoltage);
+    supervisor.trip(Fault::UnderVoltage);
+    let status = supervisor.status();
+    assert_eq!(
+        (status.mode, status.fault),
+        (Mode::Tripped, Some(Fault::OverVoltage))
+    );
+}
+
 #[test]
 fn commands_are_accepted_in_their_modes_only() {
     let limits = limits(12, false, 17);
@@ -460,6 +569,8 @@ fn commands_are_accepted_in_their_modes_only() {
             offsets: [Word(123); 2],
             sums: [Word(5); 2],
             hall_prev: 3,
+            hall_gap: 1,
+            hall_glitches: 2,
             stall_count: Word(4),
             turn: TURN,
         };
@@ -541,6 +652,8 @@ fn words_round_trip() {
         fault: Some(Fault::Stall),
         countdown: 65_535,
         hall_prev: 6,
+        hall_gap: 5,
+        hall_glitches: 0x7fff,
         stall_count: Word(-7),
         sums: [Word(8), Word(i32::MIN)],
         offsets: [Word(-9), Word(i32::MAX)],

@@ -29,6 +29,8 @@ pub struct Interpreted<'g> {
 struct BusWatch {
     /// Since the last period.
     told: bool,
+    /// What is wrong with the voltage that was told.
+    fault: Option<Fault>,
     /// Periods until it is stale.
     left: i32,
     /// Periods for which it is fresh.
@@ -36,13 +38,14 @@ struct BusWatch {
 }
 
 impl BusWatch {
-    fn pass_period(&mut self) {
+    fn pass_period(&mut self) -> Option<Fault> {
         self.left = if self.told {
             self.periods
         } else {
             (self.left - 1).max(0)
         };
         self.told = false;
+        self.fault.take()
     }
 }
 
@@ -96,6 +99,7 @@ impl<'g> Interpreted<'g> {
             sensors,
             bus: interface.bus_periods.map(|periods| BusWatch {
                 told: false,
+                fault: None,
                 left: 0,
                 periods,
             }),
@@ -141,6 +145,7 @@ impl<'g> Interpreted<'g> {
                     machine.rest(&places.inputs.words(&checked))?;
                     return Ok(Legs::all(leg));
                 }
+                (checked, Rest::Control) => checked,
                 (checked, Rest::Against(direction)) => {
                     if places.has_speed {
                         machine.params[places.set_point] = 0;
@@ -170,8 +175,8 @@ impl<'g> Interpreted<'g> {
 
 impl Subject for Interpreted<'_> {
     fn step(&mut self, sample: &Sample) -> Legs {
-        if let Some(bus) = &mut self.bus {
-            bus.pass_period();
+        if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
+            self.supervisor.trip(fault);
         }
         self.try_step(sample).unwrap_or_else(|escape| {
             self.escape.get_or_init(|| escape);
@@ -195,6 +200,7 @@ impl Subject for Interpreted<'_> {
         self.set(Setter::Bus, counts.into());
         if let Some(bus) = &mut self.bus {
             bus.told = true;
+            bus.fault = self.limits.bus_fault(counts);
         }
     }
 

@@ -25,8 +25,11 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         calibration_log2,
         precharge_periods,
         stall_periods,
+        hall_inverted,
+        hall_glitches,
         sectors,
         brake_periods,
+        bus_counts,
         sensors: _,
     } = *limits;
     Limits {
@@ -40,8 +43,11 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         calibration_log2,
         precharge_periods,
         stall_periods,
+        hall_inverted,
+        hall_glitches,
         sectors,
         brake_periods,
+        bus_counts,
     }
 }
 

@@ -52,6 +52,15 @@ pub struct Motor {
     pub hall_codes: [u8; 6],
 }
 
+impl Motor {
+    /// The sensors that are turned round where all three stand 60 degrees apart, as bits of the code:
+    /// the two codes that do not occur are then those of equal sensors. Else 0.
+    pub fn hall_inverted(&self) -> u8 {
+        let missing = (0..8_u8).filter(|code| !self.hall_codes.contains(code));
+        missing.min_by_key(|code| code.count_ones()).unwrap_or(0)
+    }
+}
+
 /// Shape of the EMF over the electrical angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -78,6 +87,9 @@ pub struct Inverter {
     pub bus_min: Option<f64>,
     /// Greatest bus voltage, volt. Measured bus only.
     pub bus_max: Option<f64>,
+    /// Least and greatest ADC count of the bus voltage without a fault. Measured bus only.
+    #[serde(default = "any_count")]
+    pub bus_counts: [u16; 2],
     /// Control period, seconds.
     pub t_s: f64,
     /// Timer counts of a duty of one.
@@ -129,6 +141,9 @@ pub struct Inverter {
     pub omega_max: f64,
     /// Periods without a Hall edge that count as a stall; 0 without stall detection.
     pub stall_periods: u32,
+    /// Samples in a row with a disturbed Hall code that are bridged.
+    #[serde(default)]
+    pub hall_glitches: u32,
     /// Periods of a sector at the speed up to which a short circuit brakes; 0: at every speed.
     #[serde(default)]
     pub brake_periods: u32,
@@ -236,6 +251,10 @@ pub enum CurrentSensing {
 
 fn one() -> u32 {
     1
+}
+
+fn any_count() -> [u16; 2] {
+    [0, u16::MAX]
 }
 
 /// Source of the bus voltage.
@@ -384,13 +403,13 @@ impl Spec {
         }
         self.check_controller()?;
         inverter.check_sensors()?;
-        let mut codes = motor.hall_codes;
+        let mut codes = motor.hall_codes.map(|code| code ^ motor.hall_inverted());
         codes.sort_unstable();
         if codes != [1, 2, 3, 4, 5, 6] {
             return Err(Error::field(
                 "motor.hall_codes",
                 format!("{:?}", motor.hall_codes),
-                "expected each of 1 to 6 once",
+                "expected six different codes without two opposite ones",
             ));
         }
         inverter.bus_sense()?;

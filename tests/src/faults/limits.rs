@@ -5,7 +5,7 @@ use hexagen_codegen::interface::{Limits, SensedPhases, Sensor};
 /// A fault: name and change.
 type Fault = (&'static str, fn(&mut Limits));
 
-const FAULTS: [Fault; 25] = [
+const FAULTS: [Fault; 30] = [
     ("a count more", |limits| limits.adc_max += 1),
     ("a count less", |limits| limits.adc_max -= 1),
     ("the other way round", |limits| {
@@ -57,6 +57,21 @@ const FAULTS: [Fault; 25] = [
     }),
     ("stall a period earlier", |limits| {
         limits.stall_periods = (limits.stall_periods - 1).max(0);
+    }),
+    ("a Hall sensor the other way round", |limits| {
+        limits.hall_inverted ^= 2;
+    }),
+    ("a Hall code bridged once more", |limits| {
+        limits.hall_glitches += 1;
+    }),
+    ("a Hall code bridged once less", |limits| {
+        limits.hall_glitches = limits.hall_glitches.saturating_sub(1);
+    }),
+    ("over-voltage a count later", |limits| {
+        limits.bus_counts[1] = limits.bus_counts[1].saturating_add(1);
+    }),
+    ("under-voltage a count earlier", |limits| {
+        limits.bus_counts[0] = limits.bus_counts[0].saturating_sub(1);
     }),
     ("two sectors exchanged", |limits| {
         let [low, high] = [4, 8].map(|shift| limits.sectors >> shift & 7);

@@ -306,7 +306,22 @@ pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
         Code::HallCodes,
         at,
         format!(
-            "`hall_codes`: {given}: {why}; give the codes of sectors 1 to 6, each of 1 to 6 once and one bit apart, for example `[1, 5, 4, 6, 2, 3]`"
+            "`hall_codes`: {given}: {why}; give the codes of sectors 1 to 6, each one bit from the next, for example `[1, 5, 4, 6, 2, 3]`, or with sensors 60 degrees apart `[0, 1, 3, 7, 6, 4]`"
+        ),
+    )
+}
+
+/// A gap of Hall codes in which the rotor may leave the next sector.
+pub fn hall_glitches(at: &Location, given: &str, most: u32, maximum_speed: &str) -> Diagnostic {
+    let remedy = match most {
+        0 => "leave it out, or lower `maximum_speed`".to_owned(),
+        _ => format!("give at most {most}, or lower `maximum_speed`"),
+    };
+    Diagnostic::new(
+        Code::OutOfRange,
+        at,
+        format!(
+            "`hall_glitches`: {given} samples and one more take longer than a sector at `maximum_speed` {maximum_speed}, so that the code behind them may skip one; {remedy}"
         ),
     )
 }

@@ -116,7 +116,7 @@ impl Drive<'_> {
 
     /// The public functions, and the private ones that they call.
     pub(super) fn functions(&self) -> String {
-        let mut text = self.step_at_rest();
+        let mut text = self.keep_trip() + &self.trip_on_bus() + &self.step_at_rest();
         let setters = self.program.setters.iter();
         text.extend(
             setters.map(|(_, setter)| emit_setter(self.program, setter, self.names).stages),
@@ -182,7 +182,13 @@ impl Drive<'_> {
             "hexagen_checked checked;",
             "const hexagen_rested rested = hexagen_rest(&drive->supervisor, &limits, sample, &checked);",
         ]);
-        body.push_str(&self.keep_trip());
+        let inner = INDENT.repeat(2);
+        let _ = write!(
+            body,
+            "{INDENT}if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED\n\
+             {inner}&& before != HEXAGEN_MODE_TRIPPED) {{\n\
+             {inner}keep_trip(drive, sample);\n{INDENT}}}\n"
+        );
         body.push_str(&lines(&[
             "drive->status = hexagen_status_word(&drive->supervisor);",
         ]));
@@ -208,7 +214,7 @@ impl Drive<'_> {
         )
     }
 
-    /// The statements that keep the period of a trip.
+    /// The function that keeps the period of a trip.
     fn keep_trip(&self) -> String {
         let mut kept = vec![
             "sample = *sample".to_owned(),
@@ -223,14 +229,43 @@ impl Drive<'_> {
                 [0, 1].map(|word| format!("bus[{word}] = hexagen_bus_words(&drive->bus)[{word}]")),
             );
         }
-        let inner = INDENT.repeat(2);
-        let mut text = format!(
-            "{INDENT}if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED\n{inner}&& before != HEXAGEN_MODE_TRIPPED) {{\n"
-        );
+        let mut body = String::new();
         for kept in kept {
-            let _ = writeln!(text, "{inner}drive->trip.{kept};");
+            let _ = writeln!(body, "{INDENT}drive->trip.{kept};");
         }
-        text + &format!("{inner}drive->trip_number = (drive->trip_number + 1U) | 1U;\n{INDENT}}}\n")
+        body.push_str(&lines(&[
+            "drive->trip_number = (drive->trip_number + 1U) | 1U;",
+        ]));
+        let comment = self.names.comment("", &["Keeps the period of a trip."]);
+        let head = format!(
+            "static void keep_trip({}, const hexagen_sample *sample)",
+            self.drive()
+        );
+        format!(
+            "{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n",
+            wrapped("", &head)
+        )
+    }
+
+    /// The trip for a bus voltage; empty where it is fixed.
+    fn trip_on_bus(&self) -> String {
+        if !self.has_bus() {
+            return String::new();
+        }
+        let inner = INDENT.repeat(2);
+        let comment = self
+            .names
+            .comment("", &["Trips the drive, unless it is tripped already."]);
+        let head = format!(
+            "static void trip_on_bus({}, const hexagen_sample *sample, hexagen_fault fault)",
+            self.drive()
+        );
+        format!(
+            "{comment}HEXAGEN_COLD\n{}{{\n{INDENT}if (drive->supervisor.mode != HEXAGEN_MODE_TRIPPED) {{\n\
+             {inner}hexagen_trip(&drive->supervisor, fault);\n\
+             {inner}keep_trip(drive, sample);\n{INDENT}}}\n}}\n\n",
+            wrapped("", &head)
+        )
     }
 
     /// The statements that end a rest where a fast rotor is braked.
@@ -245,7 +280,8 @@ impl Drive<'_> {
             )
         };
         format!(
-            "{INDENT}if (rested.is_controlled) {{\n{inner}{demand};\n\
+            "{INDENT}if (rested.is_braking) {{\n{inner}{demand};\n{INDENT}}}\n\
+             {INDENT}if (rested.is_controlled) {{\n\
              {inner}return hexagen_period_of(rested, checked);\n{INDENT}}}\n"
         )
     }
@@ -308,10 +344,15 @@ impl Drive<'_> {
         let mut body = lines(&["hexagen_checked checked;"]);
         if let Some(periods) = self.interface.bus_periods {
             let line = format!(
-                "hexagen_pass_period(&drive->bus, {});",
+                "const hexagen_fault fault = hexagen_pass_period(&drive->bus, {});",
                 typed_number(periods)
             );
-            body.push_str(&lines(&[&line]));
+            body.push_str(&lines(&[&line, "if (fault != HEXAGEN_FAULT_NONE) {"]));
+            let inner = INDENT.repeat(2);
+            let _ = write!(
+                body,
+                "{inner}trip_on_bus(drive, sample, fault);\n{INDENT}}}\n"
+            );
         }
         let check = format!(
             "if (!hexagen_check(&drive->supervisor, &limits, sample, &drive->{}, &checked)) {{",
@@ -390,6 +431,14 @@ impl Drive<'_> {
             ]));
             let mut words = code.words;
             words.resize(Demand::OF_BUS.len(), "0".to_owned());
+            let counts = setter
+                .inputs
+                .iter()
+                .map(|input| self.names.local(&input.name));
+            words.push(format!(
+                "hexagen_judge_bus(&limits, {})",
+                counts.collect::<Vec<_>>().join(", ")
+            ));
             let line = format!("hexagen_tell_bus(&drive->bus, {});", words.join(", "));
             body.push_str(&lines(&[&line]));
         }
@@ -626,7 +675,7 @@ fn limits_of(limits: &Limits) -> (&'static str, Vec<(String, &'static str)>) {
 }
 
 /// The limits with their names, in the order of the runtime's macro.
-fn arguments(limits: &Limits) -> [(String, &'static str); 14] {
+fn arguments(limits: &Limits) -> [(String, &'static str); 18] {
     let [least, most] = limits.offsets;
     let [low, high] = limits.currents;
     [
@@ -642,7 +691,11 @@ fn arguments(limits: &Limits) -> [(String, &'static str); 14] {
         (format!("{}", limits.calibration_log2), "calibration_log2"),
         (format!("{}", limits.precharge_periods), "precharge_periods"),
         (typed_number(limits.stall_periods), "stall_periods"),
+        (format!("{}", limits.hall_inverted), "hall_inverted"),
+        (format!("{}", limits.hall_glitches), "hall_glitches"),
         (format!("UINT32_C({:#010x})", limits.sectors), "sectors"),
         (typed_number(limits.brake_periods), "brake_periods"),
+        (format!("{}", limits.bus_counts[0]), "bus_least"),
+        (format!("{}", limits.bus_counts[1]), "bus_most"),
     ]
 }

@@ -195,8 +195,11 @@ fn limits_of(limits: &Limits) -> Source {
     let log2 = n(limits.calibration_log2.into());
     let precharge = n(limits.precharge_periods.into());
     let stall = n(limits.stall_periods.into());
+    let hall_inverted = n(limits.hall_inverted.into());
+    let hall_glitches = n(limits.hall_glitches.into());
     let sectors = n(limits.sectors.into());
     let brake = n(limits.brake_periods.into());
+    let [bus_least, bus_most] = limits.bus_counts.map(|count| n(count.into()));
     quote! {
         Limits {
             adc_max: #adc_max,
@@ -209,8 +212,11 @@ fn limits_of(limits: &Limits) -> Source {
             calibration_log2: #log2,
             precharge_periods: #precharge,
             stall_periods: #stall,
+            hall_inverted: #hall_inverted,
+            hall_glitches: #hall_glitches,
             sectors: #sectors,
             brake_periods: #brake,
+            bus_counts: [#bus_least, #bus_most],
         }
     }
 }

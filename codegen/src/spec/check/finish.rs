@@ -87,6 +87,7 @@ pub(super) fn inverter(
             stall_timeout(inverter, motor, controller, minimum_speed),
             t_s,
         ),
+        hall_glitches: hall_glitches(reader, inverter, motor, (t_s, maximum_speed), errors),
         calibration_log2: inverter.calibration_log2,
         precharge_periods: finish_precharge(reader, inverter, t_s, errors),
     })
@@ -109,6 +110,32 @@ fn stall_timeout(
         }
         (None, _) => 0.0,
     }
+}
+
+/// Samples with a disturbed Hall code that are bridged. The rotor must not leave the next sector
+/// meanwhile: the first sound code behind the gap would seem disturbed, too.
+fn hall_glitches(
+    reader: &Reader,
+    inverter: &Inverter,
+    motor: &Motor,
+    (t_s, maximum_speed): (f64, f64),
+    errors: &mut Collector,
+) -> u32 {
+    let Some(pole_pairs) = motor.pole_pairs.filter(|_| inverter.hall_glitches > 0) else {
+        return inverter.hall_glitches;
+    };
+    let sector = FRAC_PI_3 / (maximum_speed * f64::from(pole_pairs));
+    let most = (sector / t_s - 1.0).floor();
+    if f64::from(inverter.hall_glitches) > most {
+        let part = reader.part("hall_glitches", String::new);
+        errors.push(catalogue::hall_glitches(
+            &part.location,
+            &part.given,
+            most.max(0.0) as u32,
+            &rpm(maximum_speed),
+        ));
+    }
+    inverter.hall_glitches
 }
 
 fn finish_precharge(reader: &Reader, inverter: &Inverter, t_s: f64, errors: &mut Collector) -> u32 {

@@ -33,6 +33,7 @@ pub(super) struct Inverter<'a> {
     pub minimum_speed: Option<Given<'a>>,
     pub maximum_speed: Option<Given<'a>>,
     pub stall_timeout: Option<Given<'a>>,
+    pub hall_glitches: u32,
     pub calibration_log2: u32,
     pub precharge: Option<Given<'a>>,
 }
@@ -89,10 +90,21 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         minimum_speed: reader.plain_quantity(errors, "minimum_speed"),
         maximum_speed: reader.plain_quantity(errors, "maximum_speed"),
         stall_timeout: reader.plain_quantity(errors, "stall_timeout"),
+        hall_glitches: reader.integer(errors, "hall_glitches").unwrap_or(0),
         calibration_log2: read_calibration(reader, errors),
         precharge: reader.plain_quantity(errors, "precharge"),
     }
 }
+
+/// Fields of a measured bus.
+const OF_MEASURED: [&str; 6] = [
+    "bus_adc_bits",
+    "bus_adc_range",
+    "bus_min",
+    "bus_max",
+    "over_voltage",
+    "under_voltage",
+];
 
 /// Fixed or measured bus; a measured one needs its ADC and takes limits.
 fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> Option<BusSource> {
@@ -101,11 +113,13 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
     let range = reader.plain_quantity(errors, "bus_adc_range");
     let min = reader.plain_quantity(errors, "bus_min");
     let max = reader.plain_quantity(errors, "bus_max");
+    let over = reader.plain_quantity(errors, "over_voltage");
+    let under = reader.plain_quantity(errors, "under_voltage");
     let measured = reader
         .word(errors, "v_bus", &[("fixed", false), ("measured", true)])
         .or_else(|| reader.field("v_bus").is_none().then_some(false))?;
     if !measured {
-        for name in ["bus_adc_bits", "bus_adc_range", "bus_min", "bus_max"] {
+        for name in OF_MEASURED {
             if let Some(field) = reader.field(name) {
                 let (at, given) = (&field.location, field.value.to_string());
                 errors.push(catalogue::needless_field(
@@ -156,6 +170,30 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
             &high_part,
         ));
     }
+    let under = trip_level(under, low, |part, is_on| {
+        if is_on && part.si >= nominal.si {
+            errors.push(catalogue::bus_measurement(
+                &part.part,
+                "below",
+                &nominal.part,
+            ));
+        }
+    });
+    let over = trip_level(over, high, |part, is_on| {
+        if is_on && part.si <= nominal.si {
+            errors.push(catalogue::bus_measurement(
+                &part.part,
+                "above",
+                &nominal.part,
+            ));
+        } else if range.si < part.si {
+            errors.push(catalogue::bus_measurement(
+                &range.part,
+                "at least",
+                &part.part,
+            ));
+        }
+    });
     let gain = range.si / f64::from(1_u32 << adc_bits);
     if gain > COARSEST_BUS * nominal.si * (1.0 + 1e-9) {
         let full = f64::from(1_u32 << adc_bits);
@@ -172,6 +210,17 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
         adc_bits,
         min: low,
         max: high,
+        under,
+        over,
+    })
+}
+
+/// A voltage that trips, volt, 0 for none: by default the limit of the measurement. `check` takes a
+/// given one, and whether it is not 0.
+fn trip_level(given: Option<Given>, usual: f64, check: impl FnOnce(&Given, bool)) -> f64 {
+    given.map_or(usual, |given| {
+        check(&given, given.si > 0.0);
+        given.si
     })
 }
 

@@ -241,30 +241,32 @@ fn read_rated_current<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option
     }
 }
 
-/// Each of 1 to 6 once, neighbours (and last and first) one bit apart.
+/// Six different codes, neighbours (and last and first) one bit apart, of which each sensor shows a
+/// one in three sectors in a row. Sensors 120 degrees apart never agree; of sensors 60 degrees apart
+/// two other opposite codes do not occur.
 fn read_hall_codes(reader: &Reader, errors: &mut Collector) -> Option<[u8; 6]> {
     let (list, part) = reader.integers(errors, "hall_codes")?;
     let codes: Vec<u8> = list
         .iter()
         .filter_map(|code| u8::try_from(*code).ok())
         .collect();
-    let mut sorted = codes.clone();
-    sorted.sort_unstable();
-    let problem = if let Some(code) = list.iter().find(|code| !(1..=6).contains(*code)) {
-        Some(format!("{code} lies outside 1 to 6"))
+    let twice = (0..codes.len()).find(|&k| codes[..k].contains(&codes[k]));
+    let problem = if let Some(code) = list.iter().find(|code| !(0..=7).contains(*code)) {
+        Some(format!("{code} lies outside 0 to 7"))
     } else if list.len() != 6 {
         Some(format!("{} codes instead of 6", list.len()))
-    } else if sorted != [1, 2, 3, 4, 5, 6] {
-        Some("not each of 1 to 6 once".to_owned())
+    } else if let Some(k) = twice {
+        Some(format!("{} stands twice", codes[k]))
+    } else if let Some(k) = (0..6).find(|&k| (codes[k] ^ codes[(k + 1) % 6]).count_ones() != 1) {
+        let next = codes[(k + 1) % 6];
+        Some(format!(
+            "{} and {next} differ by more than one bit",
+            codes[k]
+        ))
     } else {
-        let jump = (0..6).find(|&k| (codes[k] ^ codes[(k + 1) % 6]).count_ones() != 1);
-        jump.map(|k| {
-            format!(
-                "{} and {} differ by more than one bit",
-                codes[k],
-                codes[(k + 1) % 6]
-            )
-        })
+        let missing: Vec<u8> = (0..8).filter(|code| !codes.contains(code)).collect();
+        let is_odd = missing[0] ^ missing[1] != 7;
+        is_odd.then(|| "a sensor does not show a one for half a turn".to_owned())
     };
     if let Some(problem) = problem {
         errors.push(catalogue::hall_codes(&part.location, &part.given, &problem));

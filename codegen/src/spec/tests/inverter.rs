@@ -266,3 +266,103 @@ fn a_drive_with_a_speed_loop_detects_a_stall_by_default() {
     assert_eq!(periods("stall_timeout = \"200 ms\"", "on"), 4_000);
     assert_eq!(periods("", "off"), 0);
 }
+
+#[test]
+fn sensors_60_degrees_apart_are_told_by_the_codes_that_are_missing() {
+    let read = |codes: &str| {
+        let motor = MOTOR.replace(
+            "[inverter]\n",
+            &format!("hall_codes = {codes}\n[inverter]\n"),
+        );
+        let text = format!("{motor}{TIMER}adc_range = \"40 A\"\n[controller]\nkind = \"pdcc\"\n");
+        parse_toml(&text, "m.toml")
+            .and_then(|ast| check(&ast))
+            .map(|(spec, _)| (spec.motor.hall_inverted(), spec.motor.upright_codes()))
+            .map_err(|errors| errors.to_string())
+    };
+    for (codes, inverted, upright) in [
+        ("[1, 5, 4, 6, 2, 3]", 0, [1, 5, 4, 6, 2, 3]),
+        ("[0, 1, 3, 7, 6, 4]", 0b010, [2, 3, 1, 5, 4, 6]),
+        ("[0, 2, 3, 7, 5, 4]", 0b001, [1, 3, 2, 6, 4, 5]),
+        ("[7, 5, 1, 0, 2, 6]", 0b100, [3, 1, 5, 4, 6, 2]),
+    ] {
+        assert_eq!(read(codes), Ok((inverted, upright)), "{codes}");
+    }
+    for (codes, why) in [
+        (
+            "[0, 2, 6, 7, 5, 4]",
+            "a sensor does not show a one for half a turn",
+        ),
+        ("[0, 1, 3, 7, 6, 0]", "0 stands twice"),
+        ("[0, 1, 3, 7, 6]", "5 codes instead of 6"),
+        ("[0, 1, 3, 7, 4, 6]", "7 and 4 differ by more than one bit"),
+    ] {
+        let told = read(codes).expect_err(codes);
+        assert!(told.contains(why), "{codes}: {told}");
+    }
+}
+
+#[test]
+fn disturbed_hall_codes_are_bridged_for_less_than_a_sector() {
+    let check = |samples: u32| {
+        let inverter = format!("{TIMER}adc_range = \"40 A\"\nhall_glitches = {samples}");
+        try_check(&inverter, "kind = \"pdcc\"").map(|(spec, _)| spec.inverter.hall_glitches)
+    };
+    // A sector at 3000 rpm lasts 0.833 ms, 16.7 periods.
+    assert_eq!([0, 3, 15].map(check), [Ok(0), Ok(3), Ok(15)]);
+    let told = check(16).expect_err("longer than a sector");
+    assert!(
+        told.contains("`hall_glitches`: 16 samples and one more take longer than a sector at `maximum_speed` 3000 rpm")
+            && told.contains("give at most 15, or lower `maximum_speed`"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_measured_bus_trips_at_its_limits_or_where_told() {
+    let counts = |lines: &str| {
+        let inverter = format!(
+            "{TIMER}adc_range = \"40 A\"\nv_bus = \"measured\"\nbus_adc_bits = 12\n\
+             bus_adc_range = \"81.92 V\"\n{lines}"
+        );
+        try_check(&inverter, "kind = \"pdcc\"").map(|(spec, _)| spec.inverter.bus_counts())
+    };
+    // 20 mV a count; 70 % and 130 % of 48 V.
+    assert_eq!(counts(""), Ok([1680, 3120]));
+    assert_eq!(
+        counts("bus_max = \"60 V\"\nbus_min = \"40 V\""),
+        Ok([2000, 3000])
+    );
+    assert_eq!(
+        counts("over_voltage = \"56.01 V\"\nunder_voltage = \"30.01 V\""),
+        Ok([1501, 2800])
+    );
+    assert_eq!(
+        counts("over_voltage = \"0 V\"\nunder_voltage = \"0 V\""),
+        Ok([0, u16::MAX])
+    );
+    // The greatest count may be any voltage above.
+    assert_eq!(counts("over_voltage = \"81.92 V\""), Ok([1680, 4094]));
+    for (lines, told) in [
+        (
+            "over_voltage = \"48 V\"",
+            "`over_voltage`: 48 V is not above `bus_voltage` 48 V",
+        ),
+        (
+            "under_voltage = \"50 V\"",
+            "`under_voltage`: 50 V is not below `bus_voltage` 48 V",
+        ),
+        (
+            "over_voltage = \"90 V\"",
+            "`bus_adc_range`: 81.92 V is not at least `over_voltage` 90 V",
+        ),
+    ] {
+        let found = counts(lines).expect_err(lines);
+        assert!(found.contains(told), "{found}");
+    }
+    let fixed = try_check(
+        &format!("{TIMER}adc_range = \"40 A\"\nover_voltage = \"56 V\""),
+        "kind = \"pdcc\"",
+    );
+    assert!(fixed.is_err_and(|told| told.contains("`over_voltage`")));
+}

@@ -128,12 +128,11 @@ fn hall_codes_beyond_the_range_are_named() {
     for (codes, code) in [
         ("[9, 5, 4, 6, 2, 3]", "9"),
         ("[1, 5, 4, 6, 2, 11]", "11"),
-        ("[1, 5, 4, 6, 2, 3, 7]", "7"),
+        ("[1, 5, 4, 6, 2, 3, 8]", "8"),
         ("[257, 5, 4, 6, 2, 3]", "257"),
-        ("[0, 5, 4, 6, 2, 3]", "0"),
     ] {
         let message = format!(
-            "`hall_codes`: {codes}: {code} lies outside 1 to 6; give the codes of sectors 1 to 6, each of 1 to 6 once and one bit apart, for example `[1, 5, 4, 6, 2, 3]`"
+            "`hall_codes`: {codes}: {code} lies outside 0 to 7; give the codes of sectors 1 to 6, each one bit from the next, for example `[1, 5, 4, 6, 2, 3]`, or with sensors 60 degrees apart `[0, 1, 3, 7, 6, 4]`"
         );
         let told = changed(
             "pole_pairs = 4\n",

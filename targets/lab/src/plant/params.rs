@@ -327,10 +327,10 @@ impl PlantParams {
         )?;
         for code in self.hall_codes {
             require(
-                (1..=6).contains(&code),
+                (0..=7).contains(&code),
                 "hall code",
                 (f64::from(code), ""),
-                "1 to 6",
+                "0 to 7",
             )?;
         }
         if let Some(m) = self.mechanics {

@@ -165,7 +165,7 @@ impl<W: Word> BitTrue<W> {
             self.to_duty = Coefficient::new(self.ratio, self.k.ratio_bits);
         }
         if let Some(watch) = &mut self.bus_watch {
-            watch.tell();
+            watch.tell(counts);
         }
     }
 
@@ -282,8 +282,8 @@ impl<W: Word> BitTrue<W> {
     /// One control period: reads the sample, returns the command for the inverter.
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> Legs {
-        if let Some(watch) = &mut self.bus_watch {
-            watch.age();
+        if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
+            self.state.supervisor.trip(fault);
         }
         let k = &self.k;
         // 1 measure
@@ -297,13 +297,14 @@ impl<W: Word> BitTrue<W> {
         let i_c = -(i[0] + i[1]);
 
         // 2 hall, 3 supervise
-        let event = HallEvent::new(&self.hall_sectors, sample.hall(), self.state.sector_prev);
+        let hall = self.state.supervisor.take_hall(&self.limits, sample.hall());
+        let event = HallEvent::new(&self.hall_sectors, hall.code(), self.state.sector_prev);
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
         let seen = Observation {
             adc,
             i: measured,
-            hall: sample.hall(),
+            hall,
             demand: match self.speed {
                 Some(_) => self.speed_ref != 0.0,
                 None => self.j != 0.0,

@@ -11,7 +11,7 @@ mod vector;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{Limits, Observation, Period, Stop};
+use super::supervision::{BusWatch, Limits, Observation, Period, Stop};
 use super::trace::{Past, PhysicalState, Trace};
 use super::variant::{Variant, emf_error_limit};
 use crate::emf_motion::EmfMotion;
@@ -68,6 +68,7 @@ pub struct Ideal {
     phase: DiscretePhase,
     shape: EmfShape,
     hall_sectors: [usize; 8],
+    bus_watch: Option<BusWatch>,
     clock: HallClock,
     limits: Limits,
     gain: f64,
@@ -117,6 +118,7 @@ impl Ideal {
             phase,
             shape: EmfShape::new(motor)?,
             hall_sectors: sector::hall_sectors(motor),
+            bus_watch: BusWatch::new(inverter),
             clock: HallClock::new(spec),
             limits,
             gain,
@@ -172,6 +174,9 @@ impl Ideal {
 
     /// Sets the bus voltage as an ADC count. No effect if the bus is not measured.
     pub fn set_bus(&mut self, counts: u16) {
+        if let Some(watch) = &mut self.bus_watch {
+            watch.tell(counts);
+        }
         if let Some(bus) = self.bus_sense {
             self.v_bus =
                 (f64::from(counts).min(self.bus_count_max) * bus.gain).clamp(bus.min, bus.max);
@@ -238,6 +243,9 @@ impl Ideal {
 
     /// One control period: reads the sample, returns the exact command.
     pub fn step(&mut self, sample: &Sample) -> Duties {
+        if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
+            self.state.supervisor.trip(fault);
+        }
         // 1 measure
         let limits = &self.limits;
         let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);
@@ -250,13 +258,14 @@ impl Ideal {
         let i = clarke(&i_abc);
 
         // 2 hall, 3 supervise
-        let event = HallEvent::new(&self.hall_sectors, sample.hall(), self.state.sector_prev);
+        let hall = self.state.supervisor.take_hall(&self.limits, sample.hall());
+        let event = HallEvent::new(&self.hall_sectors, hall.code(), self.state.sector_prev);
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
         let seen = Observation {
             adc,
             i: measured,
-            hall: sample.hall(),
+            hall,
             demand: match self.speed_loop {
                 Some(_) => self.speed != 0.0,
                 None => self.current != 0.0,

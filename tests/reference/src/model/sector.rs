@@ -17,11 +17,12 @@ pub const OUT_PHASE: [usize; 7] = [0, 0, 2, 1, 0, 2, 1];
 /// Sign of the outgoing current for positive torque and forward rotation.
 pub const OUT_SIGN: [f64; 7] = [0.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0];
 
-/// Sector of each Hall code (0: invalid code), from the specification's codes of sectors 1 to 6.
+/// Sector of each Hall code without an inverted sensor (0: invalid code), from the specification's
+/// codes of sectors 1 to 6.
 pub fn hall_sectors(motor: &Motor) -> [usize; 8] {
     let mut sectors = [0; 8];
     for (index, code) in motor.hall_codes.iter().enumerate() {
-        sectors[usize::from(code & 7)] = index + 1;
+        sectors[usize::from((code ^ motor.hall_inverted()) & 7)] = index + 1;
     }
     sectors
 }

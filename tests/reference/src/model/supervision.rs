@@ -59,6 +59,8 @@ pub fn fault_from_word(word: i32) -> Option<Fault> {
         3 => Fault::Hall,
         4 => Fault::Stall,
         5 => Fault::Offset,
+        6 => Fault::OverVoltage,
+        7 => Fault::UnderVoltage,
         _ => return None,
     })
 }
@@ -73,6 +75,8 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
         Some(Fault::Hall) => 3,
         Some(Fault::Stall) => 4,
         Some(Fault::Offset) => 5,
+        Some(Fault::OverVoltage) => 6,
+        Some(Fault::UnderVoltage) => 7,
         Some(other) => unreachable!("unknown fault: {other:?}"),
     }
 }
@@ -94,6 +98,10 @@ pub struct Limits {
     pub calibration_samples: f64,
     pub precharge_periods: f64,
     pub stall_periods: f64,
+    /// Samples in a row with a disturbed Hall code that are bridged.
+    pub hall_glitches: f64,
+    /// Hall sensors that are turned round, as bits of the code.
+    pub hall_inverted: u8,
     /// Periods of a sector up to whose speed a short circuit brakes.
     pub brake_periods: f64,
     /// Sector by Hall code.
@@ -134,6 +142,8 @@ impl Limits {
             calibration_samples: f64::from(samples),
             precharge_periods: f64::from(inverter.precharge_periods),
             stall_periods: f64::from(inverter.stall_periods),
+            hall_glitches: f64::from(inverter.hall_glitches),
+            hall_inverted: spec.motor.hall_inverted(),
             brake_periods: f64::from(inverter.brake_periods),
             sectors: hall_sectors(&spec.motor),
         })
@@ -143,7 +153,7 @@ impl Limits {
 /// Time after which a measured bus voltage is stale, second.
 const BUS_FRESH: f64 = 0.1;
 
-/// The age of a measured bus voltage.
+/// The age of a measured bus voltage, and its limits.
 #[derive(Clone, Copy, Debug)]
 pub struct BusWatch {
     /// Periods after which it is stale.
@@ -152,6 +162,10 @@ pub struct BusWatch {
     age: u32,
     /// A call took effect since the last period.
     told: bool,
+    /// Counts without a fault.
+    counts: [u16; 2],
+    /// What is wrong with the voltage of that call.
+    fault: Option<Fault>,
 }
 
 impl BusWatch {
@@ -163,24 +177,33 @@ impl BusWatch {
                 limit,
                 age: limit,
                 told: false,
+                counts: inverter.bus_counts,
+                fault: None,
             }
         })
     }
 
     /// `set_bus` took effect.
-    pub fn tell(&mut self) {
+    pub fn tell(&mut self, counts: u16) {
+        let [least, most] = self.counts;
         self.told = true;
+        self.fault = if counts < least {
+            Some(Fault::UnderVoltage)
+        } else {
+            (counts > most).then_some(Fault::OverVoltage)
+        };
     }
 
-    /// A period begins.
+    /// A period begins: the fault of a call since the last one.
     #[inline]
-    pub fn age(&mut self) {
+    pub fn age(&mut self) -> Option<Fault> {
         self.age = if self.told {
             0
         } else {
             (self.age + 1).min(self.limit)
         };
         self.told = false;
+        self.fault.take()
     }
 
     /// Whether the voltage is stale, as of the last period.
@@ -215,8 +238,8 @@ pub struct Observation<W> {
     pub adc: [W; 2],
     /// Phase currents.
     pub i: [W; 3],
-    /// Hall code as read.
-    pub hall: u8,
+    /// Hall code of the sample.
+    pub hall: HallSample,
     /// The set-point is not zero.
     pub demand: bool,
 }
@@ -251,8 +274,11 @@ pub struct Supervisor<W = f64> {
     pub sum: [W; 2],
     /// Periods without an edge under demand; 0 without stall detection.
     pub stall_count: W,
-    /// The last valid Hall code, with stall detection; 0 before the first.
+    /// The last sound Hall code, with stall detection or bridging; 0 before the first.
     pub hall_prev: HallCode,
+    /// Samples since then, bridged, and all that were.
+    pub hall_gap: W,
+    pub hall_glitches: W,
     /// Rotation since braking began.
     pub turn: Turn<W>,
 }
@@ -269,6 +295,30 @@ pub struct Turn<W> {
     /// 1 forward, -1 backward; 0 before the first edge.
     pub direction: W,
 }
+
+/// The Hall code of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HallSample {
+    /// The code of a sector that the rotor may be in.
+    Sound(HallCode),
+    /// Disturbed: the last code stands in for it.
+    Bridged(HallCode),
+    /// Disturbed, and a fault: a code of another sector, or none.
+    Wrong(Option<HallCode>),
+}
+
+impl HallSample {
+    /// The code that the law takes; 0 for none.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Sound(code) | Self::Bridged(code) | Self::Wrong(Some(code)) => code.0,
+            Self::Wrong(None) => 0,
+        }
+    }
+}
+
+/// Count of bridged samples at which counting ends.
+const MOST_GLITCHES: f64 = 32_767.0;
 
 /// A Hall code, or 0 for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -338,12 +388,50 @@ impl<W: Word> Supervisor<W> {
         }
     }
 
+    /// Trips for what no sample shows, unless tripped.
+    pub fn trip(&mut self, fault: Fault) {
+        if self.mode != Mode::Tripped {
+            self.mode = Mode::Tripped;
+            self.fault = Some(fault);
+        }
+    }
+
+    /// Takes the Hall code of a sample; once per period, before [`step`](Self::step).
+    pub fn take_hall(&mut self, limits: &Limits, sampled: u8) -> HallSample {
+        let code = HallCode::of(sampled ^ limits.hall_inverted);
+        if limits.hall_glitches == 0.0 {
+            return code.map_or(HallSample::Wrong(None), HallSample::Sound);
+        }
+        let is_first = self.hall_prev == HallCode::default();
+        let sector = |code: HallCode| limits.sectors[usize::from(code.0)];
+        let last = sector(self.hall_prev);
+        // The same sector, or the one before or behind it, of six.
+        let is_near = |code: &HallCode| matches!((sector(*code) + 6 - last) % 6, 0 | 1 | 5);
+        if let Some(code) = code.filter(|code| is_first || is_near(code)) {
+            self.hall_gap = word(0.0);
+            if limits.stall_periods == 0.0 {
+                self.hall_prev = code;
+            }
+            return HallSample::Sound(code);
+        }
+        if is_first || self.hall_gap >= limits.hall_glitches {
+            return HallSample::Wrong(code);
+        }
+        self.hall_gap = self.hall_gap + 1.0;
+        self.hall_glitches = lesser(self.hall_glitches + 1.0, MOST_GLITCHES);
+        HallSample::Bridged(self.hall_prev)
+    }
+
     /// One period.
     #[inline]
     pub fn step(&mut self, limits: &Limits, seen: &Observation<W>) -> Verdict {
-        let code = HallCode::of(seen.hall);
+        let is_wrong = matches!(seen.hall, HallSample::Wrong(_));
         if limits.stall_periods > 0.0 {
-            self.count_stall(limits, code.unwrap_or(self.hall_prev), seen.demand);
+            let code = match seen.hall {
+                HallSample::Sound(code) => code,
+                HallSample::Bridged(_) | HallSample::Wrong(_) => self.hall_prev,
+            };
+            self.count_stall(limits, code, seen.demand);
         }
         let i_max = greater(greater(seen.i[0].abs(), seen.i[1].abs()), seen.i[2].abs());
         let found = if seen
@@ -352,7 +440,7 @@ impl<W: Word> Supervisor<W> {
             .any(|&adc| adc == 0.0 || adc >= limits.adc_max)
         {
             Some(Fault::AdcRange)
-        } else if code.is_none() {
+        } else if is_wrong {
             Some(Fault::Hall)
         } else if i_max > limits.i_trip {
             Some(Fault::OverCurrent)
@@ -371,8 +459,8 @@ impl<W: Word> Supervisor<W> {
         let (mut period, mut against) = (Period::Off, None);
         if self.mode == Mode::Precharge && found.is_none() {
             period = Period::Low;
-        } else if let (Mode::Brake, Some(code), None) = (self.mode, code, found) {
-            let is_slow = self.follow(limits, code);
+        } else if self.mode == Mode::Brake && found.is_none() {
+            let is_slow = self.follow(limits, HallCode(seen.hall.code()));
             if is_slow {
                 period = Period::Low;
             } else {

@@ -96,6 +96,11 @@ pub struct Stimulus {
     nominal_offset: [i32; 2],
     offset_tolerance: i32,
     bus: Option<BusSense>,
+    /// Least and greatest count of the bus without a fault.
+    bus_counts: [u16; 2],
+    /// Samples in a row that may be disturbed, and those left of a gap.
+    hall_glitches: u32,
+    disturbed: u32,
     /// Bits of the greatest speed, with a speed loop.
     speed_bits: Option<f64>,
 }
@@ -132,6 +137,9 @@ impl Stimulus {
             true_offset: [0; 2],
             nominal_offset: [0, 1].map(|sensor| inverter.adc_offset.of(sensor) as i32),
             offset_tolerance: inverter.offset_tolerance as i32,
+            bus_counts: inverter.bus_counts,
+            hall_glitches: inverter.hall_glitches,
+            disturbed: 0,
             speed_bits: spec
                 .loop_options()
                 .has_speed_loop()
@@ -293,8 +301,15 @@ impl Stimulus {
 
     fn bus_action(&mut self) -> Option<Action> {
         let bus = self.bus?;
-        if self.random.u8(..8) == 0 {
-            return Some(Action::SetBus(self.random.u16(..)));
+        match self.random.u8(..16) {
+            0 => return Some(Action::SetBus(self.random.u16(..))),
+            1 => {
+                let [least, most] = self.bus_counts;
+                let end = if self.random.bool() { least } else { most };
+                let near = self.random.i16(-1..=1);
+                return Some(Action::SetBus(end.saturating_add_signed(near)));
+            }
+            _ => {}
         }
         let volts = bus.min + self.random.f64() * (bus.max - bus.min);
         self.motor.v_bus = volts;
@@ -330,7 +345,22 @@ impl Stimulus {
             2 => self.random.u8(..),
             _ => self.codes[self.sector],
         };
-        (code, ticks)
+        (self.disturb(code), ticks)
+    }
+
+    /// A Hall code, now and then disturbed for about as many samples as are bridged.
+    fn disturb(&mut self, code: u8) -> u8 {
+        if self.hall_glitches == 0 {
+            return code;
+        }
+        if self.disturbed == 0 && self.random.u16(..512) == 0 {
+            self.disturbed = self.random.u32(..=self.hall_glitches + 1);
+        }
+        if self.disturbed == 0 {
+            return code;
+        }
+        self.disturbed -= 1;
+        self.random.u8(..8)
     }
 
     fn adc(&self, count: i32) -> u16 {
@@ -388,8 +418,9 @@ impl Stimulus {
         } else {
             self.codes[sector]
         };
+        let counts = [count(0), count(1)];
         self.sensed
-            .sample([count(0), count(1)], hall)
+            .sample(counts, self.disturb(hall))
             .hall_ticks(self.age as u16)
     }
 

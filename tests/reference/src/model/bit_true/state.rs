@@ -151,6 +151,8 @@ macro_rules! for_each_word {
         $show!("offset_b", $state.offset[1]);
         $show!("stall_count", $state.supervisor.stall_count);
         $show!("hall_prev", $state.supervisor.hall_prev);
+        $show!("hall_gap", $state.supervisor.hall_gap);
+        $show!("hall_glitches", $state.supervisor.hall_glitches);
         $show!("brake_hall", $state.supervisor.turn.hall);
         $show!("brake_age", $state.supervisor.turn.age);
         $show!("brake_interval", $state.supervisor.turn.interval);
