@@ -234,6 +234,7 @@ const LOOSE: &[Row] = &[
                     ("motor", "inertia", "\"3 kg cm2\""),
                 ],
             ),
+            ("slewed", &[("controller", "slew_rate", "\"500 A/s\"")]),
         ],
     ),
     (

@@ -37,21 +37,6 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[
         "the product at the limit rounds to the same",
     ),
     (
-        1,
-        "constant one more: `const TURN_MAX",
-        "the greatest speed turns the rotor by less in a period",
-    ),
-    (
-        1,
-        "constant one less: `const TURN_MAX",
-        "the greatest speed turns the rotor by less in a period",
-    ),
-    (
-        1,
-        "wrong bit in a constant: `const TURN_MAX",
-        "the greatest speed turns the rotor by less in a period",
-    ),
-    (
         2,
         "table entry one more: SHAPE_ROWS[124].c0",
         "the table has 96 entries, padded to a power of two",

@@ -12,6 +12,7 @@ mod modulate;
 mod number;
 mod rotor;
 pub mod set_point;
+mod slew;
 mod speed;
 
 pub use common_mode::CommonModeRule;
@@ -29,6 +30,7 @@ pub use modulate::{
 use number::round_half_up;
 pub use number::{product_bound, round_down};
 pub use rotor::{Rotor, RotorWords, advanced_sector, direction_word, sense_direction};
+pub use slew::SlewLimit;
 pub use speed::{Regulated, SpeedRegulator};
 
 use crate::diagnostics::engineering;

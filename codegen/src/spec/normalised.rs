@@ -238,6 +238,7 @@ mod tests {
                     commutation_threshold: 0.5,
                     commutation_timeout: 8,
                     speed: None,
+                    slew_rate: None,
                 },
             }),
         }

@@ -153,7 +153,7 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         (
             "line",
             "sample->hall ^ limits->hall_inverted",
-            "sample->hall",
+            "sample->hall ^ (limits->hall_inverted & 0U)",
         ),
         ("line", "supervisor->hall_prev == 0U || is_beside", "true"),
         ("line", "supervisor->hall_gap = 0;\n        /*", "/*"),

@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 20] = [
+const VARIANTS: [(&str, &str, Fields); 21] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -63,6 +63,11 @@ const VARIANTS: [(&str, &str, Fields); 20] = [
         "pdcc.speed-loop",
         "pdcc:speed_loop=on",
         &[("motor", "inertia", "3 kg cm2")],
+    ),
+    (
+        "pdcc.slew-rate",
+        "pdcc:slew_rate=200 A/s",
+        &[("inverter", "hall_glitches", "3")],
     ),
     (
         "pdcc.dead-time",

@@ -98,8 +98,9 @@ pub struct Front<'b> {
     pub emf_error: Option<[Expr<'b>; 2]>,
     /// The folded words; with a held EMF only.
     pub held: Option<Held<'b>>,
-    /// Integral of the speed regulator, and its state; with a speed loop only.
-    pub speed_integral: Option<(Memory<'b>, Expr<'b>)>,
+    /// Word of the set-point's source, and its new value: the integral of the speed regulator, or the
+    /// set-point in force with a slew rate.
+    pub of_set_point: Option<(Memory<'b>, Expr<'b>)>,
 }
 
 /// Results of the tracking, which runs in every period.
@@ -154,7 +155,12 @@ impl<'b> CurrentLoop<'_, 'b> {
         let j = set_point.j.read();
         let regulated = words.speed.zip(tracked.rotor);
         let regulated = regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j));
-        let j = regulated.map_or(j, |regulated| regulated.j);
+        let slewed = words.slew.map(|slew| slew.follow(l, j));
+        let j = match (regulated, slewed) {
+            (Some(regulated), _) => regulated.j,
+            (None, Some((slewed, _))) => slewed,
+            (None, None) => j,
+        };
         let commutation = self.commutation(&words, &tracked, [sector, j], currents);
         // Before the reference, so that the reference's product with a sign is added last.
         let held = self.holds_emf().then(|| self.held(currents.pair()));
@@ -193,7 +199,9 @@ impl<'b> CurrentLoop<'_, 'b> {
             e_expected: emf.map(|emf| emf.expected),
             emf_error: emf.and_then(|emf| emf.error),
             held,
-            speed_integral: regulated.map(|regulated| regulated.integral),
+            of_set_point: regulated
+                .map(|regulated| regulated.integral)
+                .or(slewed.map(|(_, word)| word)),
         }
     }
 
@@ -404,7 +412,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             let left_over = self.left_over(held, u);
             remembered.extend(self.fold(held, left_over));
         }
-        remembered.extend(front.speed_integral);
+        remembered.extend(front.of_set_point);
         if let (Some(commutation), Some(rule)) = (front.commutation, words.pair) {
             remembered.extend(rule.sector_prev.map(|word| (word, front.sector)));
             remembered.push((rule.left, commutation.left));

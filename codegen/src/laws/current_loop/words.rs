@@ -2,7 +2,9 @@
 
 use super::CurrentLoop;
 use crate::blocks::set_point::SetPointWords;
-use crate::blocks::{CommutationRule, RotorWords, SpeedRegulator, direction_word, sector_word};
+use crate::blocks::{
+    CommutationRule, RotorWords, SlewLimit, SpeedRegulator, direction_word, sector_word,
+};
 use crate::ir::{Interval, Memory};
 use crate::spec::{EmfSource, Reference};
 
@@ -52,6 +54,8 @@ pub struct Words<'b> {
     pub rotor: Option<RotorWords<'b>>,
     /// The speed regulator.
     pub speed: Option<SpeedRegulator<'b>>,
+    /// Slew rate of the set-point.
+    pub slew: Option<SlewLimit<'b>>,
     /// Commutation.
     pub pair: Option<CommutationRule<'b>>,
     /// Current of the last sample.
@@ -113,6 +117,9 @@ impl<'b> CurrentLoop<'_, 'b> {
             speed: options.speed.zip(set_point.speed).map(|(options, words)| {
                 SpeedRegulator::new(l, options, words, set_point.gain.value)
             }),
+            slew: options
+                .slew_rate
+                .map(|rate| SlewLimit::new(l, rate, set_point.j, set_point.gain.value)),
             pair: needs.commutation.then(|| self.commutation_rule()),
             i_prev: sees.then(|| {
                 let range = Interval::symmetric(l.current_span());

@@ -1,7 +1,7 @@
 //! Options that all controllers share, and how they are read.
 
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, at_most, engineering};
+use crate::diagnostics::{Collector, at_least, at_most, engineering};
 use crate::spec::check::reader::Reader;
 use crate::spec::options::{Row, number, word};
 use crate::spec::rule::{self, Rule};
@@ -110,6 +110,8 @@ pub struct LoopOptions {
     pub commutation_timeout: u32,
     /// Speed loop, if any.
     pub speed: Option<SpeedLoop>,
+    /// Greatest rate at which the current set-point takes effect, ampere per second; none: at once.
+    pub slew_rate: Option<f64>,
 }
 
 /// The choice of controller.
@@ -147,6 +149,12 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .by_default("1/50 of the electrical frequency at rated speed")
             .about("Bandwidth of the speed loop, at most 1/8 of the electrical frequency at rated speed; only with `speed_loop: on`"),
         |options| Some(number(options.speed?.bandwidth)),
+    ),
+    Row::of(
+        rule::quantity("slew_rate", &[D::CurrentRate], 1e-4, 1e9, "200 A/s")
+            .by_default("none: a set-point takes effect at once")
+            .about("Greatest rate at which the current follows `set_current` and `set_torque`, A/s, A/ms, mA/s; at least `rated_current` in a minute; not with `speed_loop: on`"),
+        |options| Some(number(options.slew_rate?)),
     ),
     Row::of(
         rule::plain("advance", 0.0, 2.0, "1.5")
@@ -331,6 +339,7 @@ pub(crate) fn read_common(
     let commutation_threshold = read_threshold(reader, surroundings, errors);
     let commutation_timeout = read_timeout(reader, surroundings, errors);
     let speed = read_speed_loop(reader, surroundings, errors);
+    let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
 
     if let Some(advance) = &advance
         && advance.si > 0.0
@@ -358,7 +367,39 @@ pub(crate) fn read_common(
         commutation_threshold: commutation_threshold?,
         commutation_timeout: commutation_timeout?,
         speed,
+        slew_rate,
     })
+}
+
+/// The slew rate of the current set-point, at least the rated current in a minute: a period's change
+/// is then many words.
+fn read_slew_rate(
+    reader: &Reader,
+    drive: &Surroundings,
+    speed: Option<SpeedLoop>,
+    errors: &mut Collector,
+) -> Option<f64> {
+    let rate = reader.plain_quantity(errors, "slew_rate")?;
+    if speed.is_some() {
+        let why = "the speed controller sets the current, and `set_current` only limits it";
+        refuse(reader, "slew_rate", ["speed_loop", "on"], why, errors);
+        return None;
+    }
+    let (rated, _) = drive.rated_current.as_ref()?;
+    let least = rated / 60.0;
+    if rate.si < least * (1.0 - 1e-9) {
+        errors.push(catalogue::out_of_limits(
+            &rate.part.location,
+            "slew_rate",
+            &rate.part.given,
+            &format!(
+                "{} (`rated_current` in a minute)",
+                engineering(at_least(least), "A/s")
+            ),
+            "1 GA/s",
+        ));
+    }
+    Some(rate.si)
 }
 
 /// The filter coefficient of the estimate; 1 without an estimate, where the option has no effect.

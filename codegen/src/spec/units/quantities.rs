@@ -37,6 +37,8 @@ pub enum Dimension {
     Ratio,
     /// Ampere per ADC count.
     CurrentPerCount,
+    /// SI: A/s.
+    CurrentRate,
     /// Control periods.
     Periods,
 }
@@ -61,6 +63,7 @@ impl Dimension {
             Self::Angle => "an angle",
             Self::Ratio => "a ratio",
             Self::CurrentPerCount => "a current per ADC count",
+            Self::CurrentRate => "a current per time",
             Self::Periods => "a number of control periods",
         }
     }
@@ -188,6 +191,11 @@ const QUANTITIES: &[(Powers, D, [f64; 2])] = &[
         D::CurrentPerCount,
         [1.0, 1.0],
     ),
+    (
+        powers(&[(X::Ampere, 1), (X::Second, -1)]),
+        D::CurrentRate,
+        [1.0, 1.0],
+    ),
     (powers(&[(X::Period, 1)]), D::Periods, [1.0, 1.0]),
 ];
 
@@ -273,5 +281,6 @@ pub(super) const KNOWN: &[(D, &[&str])] = &[
         D::CurrentPerCount,
         &["A/count", "mA/count", "uA/count", "mA/LSB"],
     ),
+    (D::CurrentRate, &["A/s", "A/ms", "mA/s", "kA/s"]),
     (D::Periods, &["periods", "period"]),
 ];

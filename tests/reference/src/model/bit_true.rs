@@ -14,6 +14,7 @@ mod motion;
 mod parts;
 mod physical;
 mod rotor;
+mod slew;
 mod speed;
 mod state;
 mod tables;
@@ -31,6 +32,7 @@ use constants::{Constants, Scale};
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
 use parts::Part;
+use slew::Slew;
 use speed::Regulator;
 use state::State;
 
@@ -44,6 +46,7 @@ pub struct BitTrue<W: Word = f64> {
     k: Constants<W>,
     law: Law<W>,
     speed: Option<Regulator<W>>,
+    slew: Option<Slew>,
     /// Volt per ampere of the set-point.
     gain: f64,
     // Set-point words.
@@ -114,6 +117,7 @@ impl<W: Word> BitTrue<W> {
             j: speed.as_ref().map_or(word(0.0), |speed| speed.top),
             speed_ref: word(0.0),
             speed,
+            slew: Slew::new(spec, &scale, &k)?,
             v_bus: word(k.v_bus_nominal),
             gain: reference_gain(spec),
             ratio: word(pow2(k.ratio_bits as i32)),
@@ -342,8 +346,12 @@ impl<W: Word> BitTrue<W> {
         }
         let sector_eff = angle.sector_eff;
 
-        // Speed loop
-        let (mut j, mut speed_integral) = (self.j, self.state.speed_integral);
+        // Slew rate, speed loop
+        let (mut j, mut j_in_force) = (self.j, self.state.j_in_force);
+        if let Some(slew) = &self.slew {
+            (j, j_in_force) = slew.follow(j, j_in_force);
+        }
+        let mut speed_integral = self.state.speed_integral;
         if let Some(speed) = &self.speed {
             let turning = self.state.timing.direction * self.state.omega;
             (j, speed_integral) = speed.regulate(self.speed_ref, turning, j, speed_integral);
@@ -473,6 +481,7 @@ impl<W: Word> BitTrue<W> {
             self.state.e_next = e;
             self.state.emf_error = emf_error;
             self.state.speed_integral = speed_integral;
+            self.state.j_in_force = j_in_force;
             self.state.integral = decision.integral;
             self.state.hysteresis = decision.hysteresis;
             self.state.vector_prev = state::Vector(decision.vector);

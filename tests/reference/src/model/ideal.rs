@@ -87,6 +87,8 @@ pub struct Ideal {
     k_phase: f64,
     pp_t_s: f64,
     speed_loop: Option<SpeedLoop>,
+    /// Greatest change of the set-point in a period, ampere; 0 for any.
+    slew_step: f64,
     // Set-points.
     current: f64,
     /// The speed set-point, mechanical rad/s.
@@ -136,6 +138,7 @@ impl Ideal {
             k_phase: motor.emf_constant,
             pp_t_s: pole_pairs * inverter.t_s,
             speed_loop: SpeedLoop::new(spec),
+            slew_step: spec.loop_options().slew_rate * inverter.t_s,
             current: if spec.loop_options().has_speed_loop() {
                 inverter.max_current
             } else {
@@ -301,8 +304,13 @@ impl Ideal {
             (0.0, 0.0, sector)
         };
 
-        // Speed loop
+        // Slew rate, speed loop
         let (mut current, mut speed_integral) = (self.current, self.state.speed_integral);
+        if self.slew_step > 0.0 {
+            let before = self.state.current_in_force;
+            current = current.clamp(before - self.slew_step, before + self.slew_step);
+        }
+        let current_in_force = current;
         if let Some(speed_loop) = &self.speed_loop {
             let speed = self.electrical_speed() * self.state.timing.direction;
             (current, speed_integral) =
@@ -430,6 +438,7 @@ impl Ideal {
             self.state.e_next = to_ab(&e);
             self.state.emf_error = emf_error;
             self.state.speed_integral = speed_integral;
+            self.state.current_in_force = current_in_force;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
             self.state.vector_prev = decision.vector;
@@ -445,6 +454,7 @@ impl Ideal {
             self.state.emf_error = [0.0; 2];
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
+            self.state.current_in_force = 0.0;
             self.state.rises = [None; 2];
             self.state.vector_prev = 0;
             self.state.past = Past::default();

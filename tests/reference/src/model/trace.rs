@@ -97,4 +97,6 @@ pub struct PhysicalState {
     pub past: Past,
     /// Integral of the speed controller, ampere.
     pub speed_integral: f64,
+    /// Set-point in force with a slew rate, ampere.
+    pub current_in_force: f64,
 }

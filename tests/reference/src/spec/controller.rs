@@ -39,6 +39,8 @@ pub struct LoopOptions {
     pub speed_bandwidth: f64,
     /// Inertia of rotor and load, kg m2; with a speed loop.
     pub inertia: f64,
+    /// Greatest rate of the current set-point in force, A/s; 0 without one.
+    pub slew_rate: f64,
 }
 
 impl LoopOptions {
@@ -84,6 +86,9 @@ macro_rules! options {
             /// Inertia of rotor and load, kg m2; with a speed loop.
             #[serde(default)]
             pub inertia: f64,
+            /// Greatest rate of the current set-point in force, A/s; 0 without one.
+            #[serde(default)]
+            pub slew_rate: f64,
             $($(#[$doc])* pub $field: $kind,)*
         }
 
@@ -99,6 +104,7 @@ macro_rules! options {
                     word: self.word,
                     speed_bandwidth: self.speed_bandwidth,
                     inertia: self.inertia,
+                    slew_rate: self.slew_rate,
                 }
             }
         }

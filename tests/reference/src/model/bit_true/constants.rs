@@ -278,6 +278,7 @@ impl<W: Word> Constants<W> {
                 (Part::Direction, rotor || commutation.is_some()),
                 (Part::Rotor, rotor),
                 (Part::Speed, variant.options.has_speed_loop()),
+                (Part::Slew, variant.options.slew_rate > 0.0),
                 (Part::Commutation, commutation.is_some()),
                 (Part::SectorInForce, commutation.is_some() && advanced),
                 (Part::Sight, variant.sees()),

@@ -7,6 +7,7 @@ pub enum Part {
     Direction,
     Rotor,
     Speed,
+    Slew,
     Commutation,
     SectorInForce,
     Sight,

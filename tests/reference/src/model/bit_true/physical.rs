@@ -56,13 +56,19 @@ impl BitTrue {
     /// The whole state in physical units, from which an ideal model can be built.
     pub fn physical_state(&self) -> PhysicalState {
         let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
-        self.state.to_physical(&self.k, integral_ampere)
+        let slew_ampere = self.slew.map_or(0.0, |slew| slew.ampere);
+        self.state
+            .to_physical(&self.k, [integral_ampere, slew_ampere])
     }
 }
 
 impl State<f64> {
     /// The state in physical units.
-    pub fn to_physical(self, k: &Constants<f64>, integral_ampere: f64) -> PhysicalState {
+    pub fn to_physical(
+        self,
+        k: &Constants<f64>,
+        [integral_ampere, slew_ampere]: [f64; 2],
+    ) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
         let mut due = self.past.due;
         if !k.parts.has(Part::Hysteresis) {
@@ -95,6 +101,7 @@ impl State<f64> {
                 later: volts(self.past.later),
             },
             speed_integral: self.speed_integral * integral_ampere,
+            current_in_force: self.j_in_force * slew_ampere,
         }
     }
 }

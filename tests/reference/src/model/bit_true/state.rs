@@ -18,6 +18,7 @@ pub struct State<W: Word> {
     pub timing: HallTiming<W>,
     pub omega: W,
     pub speed_integral: W,
+    pub j_in_force: W,
     pub sector_eff_prev: usize,
     pub commutation_left: W,
     pub i_prev: [W; 2],
@@ -178,6 +179,9 @@ macro_rules! for_each_word {
         if $parts.has(Part::Speed) {
             $show!("speed_integral", $state.speed_integral);
         }
+        if $parts.has(Part::Slew) {
+            $show!("j_in_force", $state.j_in_force);
+        }
         if $parts.has(Part::Commutation) {
             if $parts.has(Part::SectorInForce) {
                 $show!("sector_eff_prev", $state.sector_eff_prev);
@@ -275,6 +279,7 @@ impl<W: Word> State<W> {
     /// State after a period without control (section 12).
     pub fn stop(&mut self) {
         self.speed_integral = word(0.0);
+        self.j_in_force = word(0.0);
         self.v_cmd = [word(0.0); 2];
         self.t_cmd = [word(0.0); 3];
         self.off_cmd = 0;

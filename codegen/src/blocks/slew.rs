@@ -1,0 +1,76 @@
+//! Slew rate of the current set-point (semantics of predictive deadbeat, "Slew rate").
+
+use super::{Lowering, product_bound, round_down};
+use crate::diagnostics::engineering;
+use crate::interface::Rounding;
+use crate::ir::{Exact, Expr, Interval, Memory, Named, Param, Real, named};
+
+/// Bits of the set-point in force: with a rate of the rated current in a minute a period's step still
+/// has several.
+const BITS: u32 = 29;
+
+/// The set-point in force, which follows the set-point word at a limited rate.
+#[derive(Clone, Copy, Debug)]
+pub struct SlewLimit<'b> {
+    /// Ampere per second.
+    rate: f64,
+    in_force: Memory<'b>,
+    /// Its fraction bits beyond those of voltages.
+    extra: u32,
+    /// Greatest set-point word that a setter makes.
+    top: i64,
+    /// The set-point's gain, V/A.
+    gain: f64,
+}
+
+impl<'b> SlewLimit<'b> {
+    /// Declares the word, of the set-point word `j`; `rate` in A/s, `gain` in V/A.
+    pub fn new(l: &Lowering<'b>, rate: f64, j: Param<'b>, gain: f64) -> Self {
+        let bits = round_down(l.spec.inverter.max_current * 65536.0) as i64;
+        let top = product_bound(gain * l.scale.voltage() / 65536.0, 32, bits);
+        let range = j.interval();
+        let extra = BITS.saturating_sub(range.bits()).min(12);
+        let frac_bits = (l.scale.voltage_bits + extra) as i32;
+        let meaning = "set-point in force, base one timer count of voltage";
+        l.format("j_in_force", 32, frac_bits, Rounding::RoundHalfUp, meaning);
+        let doc = "Set-point in force, words of voltage with additional fraction bits.";
+        let range = Interval::symmetric(range.high << extra);
+        Self {
+            rate,
+            in_force: l.b.memory("j_in_force", 0, range, doc),
+            extra,
+            top,
+            gain,
+        }
+    }
+
+    /// Greatest change in a period; at least one word, at most what reaches every set-point at once.
+    fn step(&self, l: &Lowering<'b>) -> Expr<'b> {
+        let words = self.gain * l.scale.voltage() * f64::from(self.extra).exp2();
+        let exact = self.rate * l.spec.inverter.t_s * words;
+        let most = 2 * (self.top << self.extra);
+        let raw = (exact + 0.5).floor().clamp(1.0, most as f64) as i64;
+        let doc = format!(
+            "Greatest change of the set-point in a period, {}.",
+            engineering(raw as f64 / words, "A")
+        );
+        l.rounded_number("slew_step", raw, Exact::Number(Real::of(exact)), &doc)
+    }
+
+    /// The set-point in force, and the word's new value, from the set-point word.
+    pub fn follow(&self, l: &Lowering<'b>, j: Expr<'b>) -> (Expr<'b>, (Memory<'b>, Expr<'b>)) {
+        let doc = "The set-point in force approaches the set-point by at most one step a period.";
+        l.b.stage("limit_slew", &[doc]);
+        let in_force = self.in_force.read();
+        let step = self.step(l);
+        let (goal, whole) = match self.extra {
+            0 => (j, None),
+            extra => (j << extra, Some(extra)),
+        };
+        named! {
+            let j_followed = goal.clamp(in_force - step, in_force + step);
+        }
+        let j_slewed = whole.map_or(j_followed, |extra| j_followed >> extra);
+        (j_slewed.named("j_slewed"), (self.in_force, j_followed))
+    }
+}
