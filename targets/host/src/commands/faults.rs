@@ -95,9 +95,10 @@ fn print(outcome: &Outcome) -> Result<(), Failure> {
     ))?;
     print_table(&table(study))?;
     print_text(&format!(
-        "after: from the fault to the sample that trips, median. largest: true phase current after the fault, in all runs; \
-         max_current is {} A, the trip level {} A.\ntorque: mean after the fault in percent of the sound drive's, median of \
-         the runs that did not trip. The shaft is held at its speed.\n",
+        "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
+         turning rotor.\nlargest: true phase current after the fault, over all runs; max_current is {} A, the trip level {} A.\n\
+         torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip. The \
+         shaft is held at its speed.\n",
         significant(study.max_current_a, 3),
         significant(study.trip_current_a, 3),
     ))?;
@@ -134,7 +135,6 @@ fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 7] {
     } else {
         format!("{} of {}", row.tripped, row.runs)
     };
-    let figure = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |x| format!("{x:.0}"));
     let is_tried = row.seen != Seen::Untried;
     [
         row.fault.as_str().into(),
@@ -145,8 +145,19 @@ fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 7] {
             .into(),
         significant(Some(row.largest_a).filter(|_| is_tried), 3).into(),
         significant(Some(row.largest_over_max).filter(|_| is_tried), 2).into(),
-        figure(row.torque_pct).into(),
+        row.torque_pct.map_or_else(|| "-".to_owned(), range).into(),
     ]
+}
+
+/// A range in whole numbers; one number where both ends round to it.
+fn range(ends: [f64; 2]) -> String {
+    // No minus sign before a zero.
+    let [least, greatest] = ends.map(|x| x.round() as i64);
+    if least == greatest {
+        least.to_string()
+    } else {
+        format!("{least} to {greatest}")
+    }
 }
 
 /// What tripped the drive, with the number of runs where they differ.
@@ -213,15 +224,19 @@ fn verdict(study: &FaultStudy) -> String {
         text += &format!("{untried} faults were untried: the sound drive trips before.\n");
     }
     if beyond_trip_unseen > 0 {
+        let faults = study.rows.iter().filter(|row| row.part != Part::Sound);
+        let largest = faults.filter_map(|row| row.unseen_largest_a);
         text += &format!(
-            "{beyond_trip_unseen} faults let the true current pass the trip level in a run without a trip.\n"
+            "{beyond_trip_unseen} faults let the true current pass the trip level without a trip, up to {} A.\n",
+            significant(largest.reduce(f64::max), 3)
         );
     }
     if study.stall_timeout_s.is_none() {
         text += "Stall detection is off: `stall_timeout` in [inverter] turns it on.\n";
     }
-    text += "What no sample shows, no program can see: the board needs a comparator of the current on the timer's break \
-             input, a watchdog on the control interrupt and a thermal limit.";
+    text += "The drive watches ADC range, trip level, Hall codes and, where told to, a stall; what shows in none of them \
+             needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt \
+             and a thermal limit.";
     text
 }
 

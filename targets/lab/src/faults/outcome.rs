@@ -38,8 +38,8 @@ pub struct FaultRow {
     pub tripped: usize,
     /// What tripped them, the most frequent first.
     pub causes: Vec<CauseCount>,
-    /// Time from the fault to the sample that tripped the drive, millisecond: the median. `None`
-    /// without a trip, and for sound drives, in which nothing happens at an instant.
+    /// Time from the fault to the sample that tripped the drive, millisecond: the median. Of a sound
+    /// drive: from the start of control on a turning rotor. `None` without a trip.
     pub after_ms: Option<f64>,
     /// Largest true phase current after the fault, ampere.
     pub largest_a: f64,
@@ -48,8 +48,8 @@ pub struct FaultRow {
     /// The largest true phase current of a run that did not trip, ampere; `None` if all did.
     pub unseen_largest_a: Option<f64>,
     /// Mean torque after the fault in percent of that of the sound drive at the same operating
-    /// point: the median of the runs that did not trip.
-    pub torque_pct: Option<f64>,
+    /// point: the least and the greatest of the runs that did not trip. Negative against the demand.
+    pub torque_pct: Option<[f64; 2]>,
 }
 
 /// Runs with a cause.
@@ -160,11 +160,14 @@ impl FaultRow {
             runs: reached().count(),
             tripped: trips.len(),
             causes,
-            after_ms: median(times.collect()).filter(|_| !class.is_sound()),
+            after_ms: median(times.collect()),
             largest_a,
             largest_over_max: largest_a / max_current,
             unseen_largest_a: largest(&mut reached().filter(|run| run.trip.is_none())),
-            torque_pct: median(torques.collect()),
+            torque_pct: torques.fold(None, |range, torque| {
+                let [least, greatest] = range.unwrap_or([torque; 2]);
+                Some([torque.min(least), torque.max(greatest)])
+            }),
         }
     }
 

@@ -58,7 +58,7 @@ pub fn points(drive: &Prepared, torque: f64) -> Vec<OperatingPoint> {
 pub(super) struct Run {
     /// Trip before the fault: the run says nothing about it.
     pub(super) tripped_before: bool,
-    /// Trip after the fault, with the time since it.
+    /// Trip after the fault, with the time since it; of a sound drive since its start.
     pub(super) trip: Option<Trip>,
     /// Largest true phase current after the fault, ampere.
     pub(super) largest: f64,
@@ -126,7 +126,11 @@ impl<'d> Bench<'d> {
             self.break_down(&mut closed, class.defect)?;
         }
         let before = closed.tripped();
-        let begun = closed.plant().time();
+        let begun = if class.is_sound() {
+            0.0
+        } else {
+            closed.plant().time()
+        };
         let mut after = After::default();
         closed.run(self.periods_after(&run, class.defect), &mut after);
         let since = |trip: Trip| Trip {
