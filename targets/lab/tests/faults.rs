@@ -82,7 +82,7 @@ fn classes_do_what_physics_says() {
     assert!(least > 48.0 && greatest < 52.0, "{least} {greatest}");
     for phase in ["a", "b", "c"] {
         let [least, greatest] = torque(&format!("wire of phase {phase} open"));
-        assert!(least > 20.0 && greatest < 80.0, "{least} {greatest}");
+        assert!(least > 5.0 && greatest < 90.0, "{least} {greatest}");
     }
     // A field that turns backward makes no mean torque.
     let [least, greatest] = torque("wires of phases a and b exchanged");

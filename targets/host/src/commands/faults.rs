@@ -204,6 +204,11 @@ fn tone(row: &FaultRow, trip_current: f64) -> Tone {
     }
 }
 
+/// What the counts mean for the board.
+const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes and, where told to, a stall. Against what shows in none of them the \
+    board needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt and a \
+    thermal limit.";
+
 /// The counts, and what follows for the board.
 fn verdict(study: &FaultStudy) -> String {
     let Totals {
@@ -216,28 +221,28 @@ fn verdict(study: &FaultStudy) -> String {
         sound,
         false_alarms,
     } = study.totals;
-    let mut text = format!(
+    let mut lines = vec![format!(
         "Of {classes} faults the drive notices {always} in every run, {sometimes} in some, {never} in none; \
-         sound drives that trip: {false_alarms} of {sound}.\n"
-    );
+         sound drives that trip: {false_alarms} of {sound}."
+    )];
     if untried > 0 {
-        text += &format!("{untried} faults were untried: the sound drive trips before.\n");
+        lines.push(format!(
+            "{untried} faults are untried: the sound drive trips before, at every operating point."
+        ));
     }
     if beyond_trip_unseen > 0 {
-        let faults = study.rows.iter().filter(|row| row.part != Part::Sound);
-        let largest = faults.filter_map(|row| row.unseen_largest_a);
-        text += &format!(
-            "{beyond_trip_unseen} faults let the true current pass the trip level without a trip, up to {} A.\n",
+        let broken = study.rows.iter().filter(|row| row.part != Part::Sound);
+        let largest = broken.filter_map(|row| row.unseen_largest_a);
+        lines.push(format!(
+            "{beyond_trip_unseen} faults let the true current pass the trip level without a trip, up to {} A.",
             significant(largest.reduce(f64::max), 3)
-        );
+        ));
     }
     if study.stall_timeout_s.is_none() {
-        text += "Stall detection is off: `stall_timeout` in [inverter] turns it on.\n";
+        lines.push("Stall detection is off: `stall_timeout` in [inverter] turns it on.".to_owned());
     }
-    text += "The drive watches ADC range, trip level, Hall codes and, where told to, a stall; what shows in none of them \
-             needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt \
-             and a thermal limit.";
-    text
+    lines.push(HARDWARE.to_owned());
+    lines.join("\n")
 }
 
 /// Values without their repetitions, in their order.
