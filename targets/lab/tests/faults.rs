@@ -99,7 +99,8 @@ fn sound_drives_do_not_trip() {
         }
         assert_eq!(study.totals.false_alarms, 0);
         let specified = row(&study, "as specified");
-        assert_eq!(specified.torque_pct, Some([100.0; 2]));
+        let torque = specified.torque_pct.expect("no run trips");
+        assert!(torque.iter().all(|percent| (percent - 100.0).abs() < 1e-9));
     }
 }
 

@@ -162,6 +162,11 @@ fn obey_the_circuit(mut change: impl FnMut(&mut Wiring)) {
         }
         let account = auditor.energy.balance(&plant);
         let limit = if free { 1e-6 } else { 1e-9 };
-        assert!(account.relative_error() < limit, "seed {seed}: {account:?}");
+        // Where next to nothing flows, rounding is all that is left.
+        let rounding = 1e-12 * v_bus * v_bus * t_s * t_s / l;
+        assert!(
+            account.relative_error() < limit || account.error().abs() < rounding,
+            "seed {seed}: {account:?}"
+        );
     }
 }

@@ -77,11 +77,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.run.json {
         print_json(&outcome)
     } else {
-        print(&outcome)
+        print(&outcome, drive.bus_counts(0.0).is_some())
     }
 }
 
-fn print(outcome: &Outcome) -> Result<(), Failure> {
+fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
     let study = &outcome.study;
     let speeds = distinct(study.points.iter().map(|point| point.rpm));
     let torques = distinct(study.points.iter().map(|point| point.torque_nm.abs()));
@@ -102,7 +102,7 @@ fn print(outcome: &Outcome) -> Result<(), Failure> {
         significant(study.max_current_a, 3),
         significant(study.trip_current_a, 3),
     ))?;
-    print_text(&verdict(study))
+    print_text(&verdict(study, measures_bus))
 }
 
 fn table(study: &FaultStudy) -> Table {
@@ -210,7 +210,7 @@ const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes and,
     thermal limit.";
 
 /// The counts, and what follows for the board.
-fn verdict(study: &FaultStudy) -> String {
+fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
     let Totals {
         classes,
         always,
@@ -237,6 +237,12 @@ fn verdict(study: &FaultStudy) -> String {
             "{beyond_trip_unseen} faults let the true current pass the trip level without a trip, up to {} A.",
             significant(largest.reduce(f64::max), 3)
         ));
+    }
+    if measures_bus {
+        lines.push(
+            "A bus that is no longer measured trips nothing: `status().bus_is_stale` tells it."
+                .to_owned(),
+        );
     }
     if study.stall_timeout_s.is_none() {
         lines.push("Stall detection is off: `stall_timeout` in [inverter] turns it on.".to_owned());

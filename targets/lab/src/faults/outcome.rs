@@ -38,8 +38,8 @@ pub struct FaultRow {
     pub tripped: usize,
     /// What tripped them, the most frequent first.
     pub causes: Vec<CauseCount>,
-    /// Time from the fault to the sample that tripped the drive, millisecond: the median. Of a sound
-    /// drive: from the start of control on a turning rotor. `None` without a trip.
+    /// Time from the fault to the sample that tripped the drive, millisecond: the median. Of a
+    /// sound drive: from the start of control on a turning rotor. `None` without a trip.
     pub after_ms: Option<f64>,
     /// Largest true phase current after the fault, ampere.
     pub largest_a: f64,
@@ -48,7 +48,8 @@ pub struct FaultRow {
     /// The largest true phase current of a run that did not trip, ampere; `None` if all did.
     pub unseen_largest_a: Option<f64>,
     /// Mean torque after the fault in percent of that of the sound drive at the same operating
-    /// point: the least and the greatest of the runs that did not trip. Negative against the demand.
+    /// point: the least and the greatest of the runs that did not trip. Negative against the
+    /// demand.
     pub torque_pct: Option<[f64; 2]>,
 }
 

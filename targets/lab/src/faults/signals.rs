@@ -129,8 +129,8 @@ struct Noise(u32);
 
 impl Noise {
     fn new(seed: u32) -> Self {
-        // Zero is the one state without a successor.
-        Self(seed.wrapping_mul(0x9e37_79b9) | 1)
+        // Zero is the one state without a successor; few bits take long to spread.
+        Self((seed + 1).wrapping_mul(0x9e37_79b9) | 1)
     }
 
     fn word(&mut self) -> u32 {
