@@ -155,7 +155,11 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "sample->hall ^ limits->hall_inverted",
             "sample->hall ^ (limits->hall_inverted & 0U)",
         ),
-        ("line", "supervisor->hall_prev == 0U || is_beside", "true"),
+        (
+            "line",
+            "supervisor->hall_prev == 0U || is_beside",
+            "supervisor->hall_prev == 0U || is_beside || true",
+        ),
         ("line", "supervisor->hall_gap = 0;\n        /*", "/*"),
         ("line", "hall_gap >= limits", "hall_gap > limits"),
         (

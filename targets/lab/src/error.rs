@@ -21,7 +21,7 @@ pub enum LabError {
     #[error("error: {0}")]
     Argument(String),
     /// A free shaft in a comparison of fixed speeds.
-    #[error("error: the sheet needs fixed speeds; remove the inertia")]
+    #[error("error: the runs have fixed speeds; remove the inertia")]
     FreeShaft,
     /// A step has not been counted.
     #[error("error: {0}")]

@@ -10,6 +10,7 @@ pub mod closed_loop;
 pub mod counted;
 pub mod engine;
 mod error;
+pub mod faults;
 mod inputs;
 mod interpreted;
 pub mod motors;

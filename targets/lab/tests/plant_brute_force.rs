@@ -3,7 +3,7 @@
 //! through diodes, unequal phases, both EMF shapes, and rectification above the bus voltage.
 
 use hexagen::{LegState, Legs};
-use hexagen_lab::plant::{EmfShape, Observer, Plant, PlantParams, Segment};
+use hexagen_lab::plant::{EmfShape, Observer, Plant, PlantParams, Segment, Wiring};
 use std::f64::consts::{PI, TAU};
 
 /// Euler step in seconds.
@@ -37,7 +37,8 @@ impl<'a> Naive<'a> {
     }
 
     fn emf(&self, x: usize) -> f64 {
-        let angle = (self.theta_e - x as f64 * TAU / 3.0).rem_euclid(TAU);
+        let lag = self.p.wiring.windings[x] as f64 * TAU / 3.0;
+        let angle = (self.theta_e - lag).rem_euclid(TAU);
         let shape = match self.p.shape {
             EmfShape::Sinusoidal => angle.sin(),
             EmfShape::Trapezoidal { flat_top_deg } => {
@@ -70,9 +71,11 @@ impl<'a> Naive<'a> {
                 self.wanted[x] = want;
             }
             let gap = self.t - self.since[x] < p.dead_time;
+            let wiring = p.wiring;
             v[x] = match want {
-                1 if !gap => Some(p.v_bus),
-                -1 if !gap => Some(0.0),
+                _ if wiring.open[x] => None,
+                1 if !gap && !wiring.upper_dead[x] => Some(p.v_bus),
+                -1 if !gap && !wiring.lower_dead[x] => Some(0.0),
                 _ => {
                     open[x] = true;
                     if self.i[x] > 0.0 {
@@ -86,11 +89,12 @@ impl<'a> Naive<'a> {
             };
         }
         let e: [f64; 3] = std::array::from_fn(|x| self.emf(x));
+        let closed = || (0..3).filter(|&x| !p.wiring.open[x]);
         // Floating legs that would leave the rails conduct; the worst one first.
         for _ in 0..3 {
             let Some(star) = self.star(&v, &e) else {
-                let high = (0..3).max_by(|&x, &y| e[x].total_cmp(&e[y])).unwrap();
-                let low = (0..3).min_by(|&x, &y| e[x].total_cmp(&e[y])).unwrap();
+                let high = closed().max_by(|&x, &y| e[x].total_cmp(&e[y])).unwrap();
+                let low = closed().min_by(|&x, &y| e[x].total_cmp(&e[y])).unwrap();
                 if e[high] - e[low] > top - bottom {
                     v[high] = Some(top);
                     v[low] = Some(bottom);
@@ -98,7 +102,7 @@ impl<'a> Naive<'a> {
                 continue;
             };
             let excess = |x: usize| (e[x] + star - top).max(bottom - e[x] - star);
-            let worst = (0..3)
+            let worst = closed()
                 .filter(|&x| v[x].is_none())
                 .max_by(|&x, &y| excess(x).total_cmp(&excess(y)));
             if let Some(x) = worst.filter(|&x| excess(x) > 0.0) {
@@ -249,6 +253,33 @@ fn dead_time_and_unequal_phases_agree() {
             &random_commands(24, seed + 100),
             0.03,
         );
+    }
+}
+
+#[test]
+fn broken_wires_and_switches_agree() {
+    let broken: [fn(&mut Wiring); 6] = [
+        |wiring| wiring.open[2] = true,
+        |wiring| wiring.open[0] = true,
+        |wiring| wiring.upper_dead[0] = true,
+        |wiring| wiring.lower_dead[1] = true,
+        |wiring| wiring.windings = [1, 0, 2],
+        |wiring| (wiring.open[1], wiring.lower_dead[2]) = (true, true),
+    ];
+    for (seed, change) in broken.into_iter().enumerate() {
+        for mut p in [motor(), crooked()] {
+            change(&mut p.wiring);
+            let i = if p.wiring.open == [false; 3] {
+                [8.0, -3.0]
+            } else {
+                [0.0; 2]
+            };
+            let commands = random_commands(24, seed as u32 + 200);
+            compare(&p, 0.3 + seed as f64, 150.0, i, &commands, 0.03);
+            // A rectifier of two phases.
+            let omega_m = 1.2 * p.v_bus / (2.0 * p.k_phase[0]);
+            compare(&p, 0.1, omega_m, [0.0; 2], &[Legs::OFF; 40], 0.03);
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
-    boards, check, compare, completions, explain, generate, limit, motors, new, prove, report,
-    reproduce, simulate, verify,
+    boards, check, compare, completions, explain, faults, generate, limit, motors, new, prove,
+    report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, option_help};
@@ -42,6 +42,8 @@ pub enum Command {
     Simulate(simulate::Options),
     /// Finds the highest speed at which a controller holds the torque
     Limit(limit::Options),
+    /// Breaks one thing at a time, and says whether a controller trips and how large the current gets
+    Faults(faults::Options),
     /// Compares generated code with the bit-true reference, bit for bit
     Verify(verify::Options),
     /// Proves the absence of overflow and the error bounds with Gappa

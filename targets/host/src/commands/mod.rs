@@ -8,6 +8,7 @@ pub mod check;
 pub mod compare;
 pub mod completions;
 pub mod explain;
+pub mod faults;
 pub mod generate;
 pub mod limit;
 pub mod motors;

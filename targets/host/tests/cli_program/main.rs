@@ -1,5 +1,6 @@
 //! The program as its users run it, and the figures that its report promises.
 
+mod faults;
 mod generate;
 mod input;
 mod newcomer;

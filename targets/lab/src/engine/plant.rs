@@ -1,7 +1,7 @@
 //! The plant of a specification.
 
 use crate::closed_loop::{Delay, RunOptions};
-use crate::plant::{AdcChannel, EmfShape, LowSide, PlantParams};
+use crate::plant::{AdcChannel, EmfShape, LowSide, PlantParams, Wiring};
 use hexagen_codegen::spec::{self, Spec};
 
 /// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
@@ -35,6 +35,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         hall_codes: motor.hall_codes,
         hall_error_deg: [0.0; 3],
         mechanics: None,
+        wiring: Wiring::default(),
     }
 }
 

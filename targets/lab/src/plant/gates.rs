@@ -4,6 +4,7 @@
 //! the lower one otherwise, so the start of a period (the sampling instant) is the middle of the
 //! lower switch's time. Each change between the two switches is preceded by the dead time.
 
+use super::Wiring;
 use hexagen::{LegState, Legs};
 
 /// The conducting switch of a leg.
@@ -63,17 +64,24 @@ pub struct Gates {
     requests: Vec<(f64, usize, Gate)>,
     next: usize,
     dead_time: f64,
+    wiring: Wiring,
 }
 
 impl Gates {
     /// All switches off, with a dead time in seconds.
-    pub fn new(dead_time: f64) -> Self {
+    pub fn new(dead_time: f64, wiring: Wiring) -> Self {
         Self {
             legs: [LegGate::default(); 3],
             requests: Vec::with_capacity(9),
             next: 0,
             dead_time,
+            wiring,
         }
+    }
+
+    /// Another dead time and other switches from the next change on.
+    pub(super) fn change(&mut self, dead_time: f64, wiring: Wiring) {
+        (self.dead_time, self.wiring) = (dead_time, wiring);
     }
 
     /// Starts a period of so many pulses, each of `pwm_period` seconds, with the given command.
@@ -141,12 +149,16 @@ impl Gates {
         self.legs.map(|leg| -leg.changed)
     }
 
-    /// What conducts in each leg.
+    /// What conducts in each leg: of a switch that is dead, nothing.
     pub fn state(&self) -> [Gate; 3] {
-        self.legs.map(|leg| leg.gate)
+        std::array::from_fn(|x| match self.legs[x].gate {
+            Gate::Upper if self.wiring.upper_dead[x] => Gate::Off,
+            Gate::Lower if self.wiring.lower_dead[x] => Gate::Off,
+            gate => gate,
+        })
     }
 
-    /// Turn-ons of all six switches so far.
+    /// Turn-ons that all six switches were told so far.
     pub fn turn_ons(&self) -> u64 {
         self.legs.iter().map(|leg| leg.turn_ons).sum()
     }
@@ -158,7 +170,7 @@ mod tests {
 
     /// Times at which each leg's gate changes over the periods' commands.
     fn changes(dead_time: f64, commands: &[Legs]) -> Vec<(f64, usize, Gate)> {
-        let mut gates = Gates::new(dead_time);
+        let mut gates = Gates::new(dead_time, Wiring::default());
         let mut changes = Vec::new();
         for (period, command) in commands.iter().enumerate() {
             gates.begin(*command, 100, (1.0, 1));
@@ -200,7 +212,7 @@ mod tests {
 
     #[test]
     fn pulses_are_repeated_within_a_control_period() {
-        let mut gates = Gates::new(0.0);
+        let mut gates = Gates::new(0.0, Wiring::default());
         gates.begin(pulsed(50), 100, (0.25, 2));
         let mut seen = vec![];
         let mut t = 0.0;

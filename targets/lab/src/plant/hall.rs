@@ -27,6 +27,14 @@ impl Sensors {
         }
     }
 
+    /// The same sensors in other places; the last edge is kept.
+    pub(super) fn change(&mut self, error_deg: [f64; 3], codes: [u8; 6]) {
+        *self = Self {
+            last_edge: self.last_edge,
+            ..Self::new(error_deg, codes)
+        };
+    }
+
     /// Time of the last edge in seconds, minus infinity before the first.
     pub(super) fn last_edge(&self) -> f64 {
         self.last_edge

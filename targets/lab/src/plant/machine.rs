@@ -88,7 +88,7 @@ impl Plant {
         params.check()?;
         Ok(Self {
             network: Network::new(&params),
-            gates: Gates::new(params.dead_time),
+            gates: Gates::new(params.dead_time, params.wiring),
             sensors: Sensors::new(params.hall_error_deg, params.hall_codes),
             segment: Segment::default(),
             period: 0,
@@ -105,6 +105,29 @@ impl Plant {
     /// The plant's parameters.
     pub fn params(&self) -> &PlantParams {
         &self.params
+    }
+
+    /// Changes parameters between two periods: something breaks, or is repaired. The rotor keeps
+    /// angle and speed; the current of a wire that opens ends in its arc.
+    ///
+    /// # Errors
+    /// A parameter outside its range; then nothing changes.
+    pub fn change(&mut self, change: impl FnOnce(&mut PlantParams)) -> Result<(), PlantError> {
+        let mut params = self.params.clone();
+        change(&mut params);
+        params.check()?;
+        self.network = Network::new(&params);
+        self.gates.change(params.dead_time, params.wiring);
+        self.sensors
+            .change(params.hall_error_deg, params.hall_codes);
+        self.currents = self.network.without_open(self.currents);
+        self.params = params;
+        Ok(())
+    }
+
+    /// Sets the mechanical speed in rad/s.
+    pub fn set_speed(&mut self, omega_m: f64) {
+        self.omega_m = omega_m;
     }
 
     /// Sets the phase currents in amperes, to start from another state than rest. Their sum must
@@ -201,7 +224,7 @@ impl Plant {
         while t < t_s {
             let until = self.gates.advance_to(t).min(t_s);
             self.prepare_segment(t, until);
-            let gates = self.gates.state();
+            let gates = self.network.reached(self.gates.state());
             let planned = self.segment.duration;
             let zero_leg = self
                 .network
@@ -251,7 +274,10 @@ impl Plant {
             let torque: f64 = (0..3)
                 .map(|x| {
                     params.k_phase[x]
-                        * emf::value(params.shape, self.theta_e - emf::LAG[x])
+                        * emf::value(
+                            params.shape,
+                            self.theta_e - emf::LAG[params.wiring.windings[x]],
+                        )
                         * self.currents[x]
                 })
                 .sum();

@@ -21,7 +21,7 @@ pub use energy::{EnergyBalance, EnergyMeter};
 pub use gates::{Gate, Gates};
 pub use machine::{Observer, Plant, Truth};
 pub use params::{
-    AdcChannel, EmfShape, LowSide, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES,
+    AdcChannel, EmfShape, LowSide, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES, Wiring,
 };
 pub(crate) use segment::integral;
 pub use segment::{Segment, Series, TERMS, Terminal};

@@ -21,6 +21,8 @@ const MAX_EXPONENT: f64 = 0.25;
 pub(super) struct Network {
     resistance: [f64; 3],
     conductance: [f64; 3],
+    /// Wires that are open.
+    open: [bool; 3],
     v_bus: f64,
     drop: f64,
     /// Tolerance of terminal voltages against the rails; events use twice of it, so that a leg
@@ -43,6 +45,7 @@ impl Network {
         Self {
             resistance: params.resistance,
             conductance: params.inductance.map(f64::recip),
+            open: params.wiring.open,
             v_bus: params.v_bus,
             drop: params.diode_drop,
             tolerance: 1e-11 * params.v_bus,
@@ -70,6 +73,28 @@ impl Network {
         let x = self.rate.max(omega.abs()) * h;
         let enough = self.reach.iter().position(|&reach| x <= reach);
         enough.unwrap_or(TERMS - 4) + 4
+    }
+
+    /// What the gates connect to the windings: nothing where the wire is open.
+    pub(super) fn reached(&self, gates: [Gate; 3]) -> [Gate; 3] {
+        std::array::from_fn(|x| if self.open[x] { Gate::Off } else { gates[x] })
+    }
+
+    /// Currents just after the open wires' are zero. The arc takes the energy of those; two
+    /// windings that are left in series keep the flux of their loop.
+    pub(super) fn without_open(&self, currents: [f64; 3]) -> [f64; 3] {
+        let closed: Vec<usize> = (0..3).filter(|&x| !self.open[x]).collect();
+        match closed[..] {
+            [x, y] => {
+                let [l_x, l_y] = [x, y].map(|x| self.conductance[x].recip());
+                let loop_current = (l_x * currents[x] - l_y * currents[y]) / (l_x + l_y);
+                let mut kept = [0.0; 3];
+                (kept[x], kept[y]) = (loop_current, -loop_current);
+                kept
+            }
+            [_, _, _] => currents,
+            _ => [0.0; 3],
+        }
     }
 
     /// Solves the network from `currents` over `segment.duration`, or up to the first event before
@@ -124,6 +149,7 @@ impl Network {
                     upper: false,
                     diode: false,
                 },
+                Gate::Off if self.open[x] => Terminal::Floating,
                 Gate::Off if currents[x] > 0.0 => self.lower_diode(),
                 Gate::Off if currents[x] < 0.0 => self.upper_diode(),
                 Gate::Off => {
@@ -180,7 +206,9 @@ impl Network {
             }
         }
         if weight == 0.0 {
-            let (least, most) = (e(0).min(e(1)).min(e(2)), e(0).max(e(1)).max(e(2)));
+            let closed = || (0..3).filter(|&x| !self.open[x]).map(e);
+            let least = closed().fold(f64::INFINITY, f64::min);
+            let most = closed().fold(f64::NEG_INFINITY, f64::max);
             return (most - least) - (high - low);
         }
         neutral /= weight;
@@ -288,11 +316,16 @@ impl Network {
                         event = Some(x);
                     }
                 }
+                // No diode is at the end of an open wire.
+                Terminal::Floating if self.open[x] => {}
                 Terminal::Floating => {
+                    // Line-to-line against the next phase: a bridge of two diodes.
+                    let y = (x + 1) % 3;
+                    if floating_all && self.open[y] {
+                        continue;
+                    }
                     for sign in [1.0, -1.0] {
                         let limit = if floating_all {
-                            // Line-to-line against the next phase: a bridge of two diodes.
-                            let y = (x + 1) % 3;
                             let phases = segment.shape[x].iter().zip(&segment.shape[y]);
                             for (m, (f_x, f_y)) in margin[..terms].iter_mut().zip(phases) {
                                 *m = sign * segment.omega_m * (f_x - f_y);
@@ -347,7 +380,7 @@ pub(super) fn set_shape(params: &PlantParams, segment: &mut Segment) {
         segment.shape_terms = emf::series(
             params.shape,
             params.k_phase[x],
-            segment.theta_e - emf::LAG[x],
+            segment.theta_e - emf::LAG[params.wiring.windings[x]],
             segment.omega_e,
             segment.terms,
             &mut segment.shape[x],

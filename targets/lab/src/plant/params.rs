@@ -52,6 +52,30 @@ pub struct LowSide {
     pub hold: f64,
 }
 
+/// Wires and switches between inverter and motor, with what is broken of them. Arrays are per leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wiring {
+    /// The winding at each leg, 0 to 2 for a to c: two of them exchanged are two exchanged wires.
+    pub windings: [usize; 3],
+    /// Whether the wire from the leg to its winding is open: no current flows.
+    pub open: [bool; 3],
+    /// Whether the upper switch never turns on; its diode conducts.
+    pub upper_dead: [bool; 3],
+    /// Whether the lower switch never turns on; its diode conducts.
+    pub lower_dead: [bool; 3],
+}
+
+impl Default for Wiring {
+    fn default() -> Self {
+        Self {
+            windings: [0, 1, 2],
+            open: [false; 3],
+            upper_dead: [false; 3],
+            lower_dead: [false; 3],
+        }
+    }
+}
+
 /// The mechanical side of a plant whose speed is free.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mechanics {
@@ -67,7 +91,8 @@ pub struct Mechanics {
     pub viscous: f64,
 }
 
-/// Motor, inverter and sensors of a simulated plant. Arrays are per phase a, b, c.
+/// Motor, inverter and sensors of a simulated plant. Arrays are per phase a, b, c, named after the
+/// inverter's legs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlantParams {
     /// Pole pairs.
@@ -111,6 +136,9 @@ pub struct PlantParams {
     pub hall_error_deg: [f64; 3],
     /// Inertia and load, or `None` for a shaft held at its initial speed.
     pub mechanics: Option<Mechanics>,
+    /// Wires and switches; sound by default.
+    #[serde(default)]
+    pub wiring: Wiring,
 }
 
 /// Error of plant parameters.
@@ -171,6 +199,7 @@ impl PlantParams {
             hall_codes: STANDARD_HALL_CODES,
             hall_error_deg: [0.0; 3],
             mechanics: None,
+            wiring: Wiring::default(),
         }
     }
 
@@ -317,6 +346,15 @@ impl PlantParams {
             "sensed",
             (second as f64, ""),
             "two different phases, 0 to 2",
+        )?;
+        let mut windings = self.wiring.windings;
+        windings.sort_unstable();
+        let stray = windings.iter().zip(0..).find(|&(&at, place)| at != place);
+        require(
+            stray.is_none(),
+            "windings",
+            (stray.map_or(0.0, |(&at, _)| at as f64), ""),
+            "0, 1 and 2 in any order",
         )?;
         let ticks = self.hall_ticks_per_period;
         require(

@@ -1,0 +1,265 @@
+//! `hexagen faults`: what a drive notices of what may break.
+
+use crate::cli::{Bar, Failure, RunArguments, print_json, print_table, print_text};
+use clap::Args;
+use hexagen_lab::closed_loop::Cause;
+use hexagen_lab::engine::{EngineKind, Model, Prepared};
+use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, Totals, study};
+use hexagen_lab::report::{Cell, Column, Label, Table, Tone};
+use hexagen_lab::text::significant;
+use serde::Serialize;
+
+/// Options of `faults`.
+#[derive(Args, Clone, Debug)]
+pub struct Options {
+    /// Motor, controller and plant.
+    #[command(flatten)]
+    pub run: RunArguments,
+}
+
+/// A study with its drive.
+#[derive(Clone, Debug, Serialize)]
+pub struct Outcome {
+    /// Motor.
+    pub motor: String,
+    /// Controller variant.
+    pub controller: String,
+    /// Model that ran.
+    pub model: Model,
+    /// Engine of the fixed-point program; none for the references.
+    pub engine: Option<EngineKind>,
+    /// The study.
+    #[serde(flatten)]
+    pub study: FaultStudy,
+}
+
+/// Breaks everything, one thing at a time.
+///
+/// # Errors
+/// Diagnostics, or an option out of range.
+pub fn collect(options: &Options) -> Result<(Prepared, FaultStudy), Failure> {
+    let arguments = &options.run;
+    let drive = arguments.prepare_for_torque()?;
+    let torque = arguments.torque(&drive);
+    if torque == 0.0 {
+        return Err(Failure::Argument(
+            "--torque 0: without current a drive notices little; give a torque that is not 0"
+                .to_owned(),
+        ));
+    }
+    if arguments.plant.inertia.is_some() {
+        return Err(Failure::Argument(
+            "--inertia: faults are tried with the shaft held at its speed; remove it".to_owned(),
+        ));
+    }
+    // Warns of a set-point beyond the limit.
+    arguments.plant.set_point(&drive, torque);
+    let plant = arguments.plant.options();
+    let found = study(&drive, arguments.model(), &plant, torque, &Bar::default());
+    let found = found.map_err(|error| arguments.plant.blame(error))?;
+    Ok((drive, found))
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// As [`collect`].
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let (drive, study) = collect(options)?;
+    let model = options.run.model();
+    let outcome = Outcome {
+        motor: drive.motor.clone(),
+        controller: drive.variant.clone(),
+        model,
+        engine: (model == Model::Fixed).then(|| drive.engine_kind()),
+        study,
+    };
+    if options.run.json {
+        print_json(&outcome)
+    } else {
+        print(&outcome, drive.bus_counts(0.0).is_some())
+    }
+}
+
+fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
+    let study = &outcome.study;
+    let speeds = distinct(study.points.iter().map(|point| point.rpm));
+    let torques = distinct(study.points.iter().map(|point| point.torque_nm.abs()));
+    print_text(&format!(
+        "{}, {} ({:?}): one thing breaks at a time, at {} rpm with {} Nm, motoring and braking\n",
+        outcome.motor,
+        outcome.controller,
+        outcome.model,
+        listed(&speeds, |rpm| format!("{rpm:.0}")),
+        listed(&torques, |torque| significant(torque, 3)),
+    ))?;
+    print_table(&table(study))?;
+    print_text(&format!(
+        "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
+         turning rotor.\nlargest: true phase current after the fault, over all runs; max_current is {} A, the trip level {} A.\n\
+         torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip. The \
+         shaft is held at its speed.\n",
+        significant(study.max_current_a, 3),
+        significant(study.trip_current_a, 3),
+    ))?;
+    print_text(&verdict(study, measures_bus))
+}
+
+fn table(study: &FaultStudy) -> Table {
+    let columns = [
+        Column::text("what breaks"),
+        Column::number("trips", ""),
+        Column::text("by"),
+        Column::number("after", "ms"),
+        Column::number("largest", "A"),
+        Column::number("over max_current", ""),
+        Column::number("torque", "%"),
+    ];
+    let mut table = Table::new("", columns);
+    for part in Part::ALL {
+        let mut rows = study.of_part(part).peekable();
+        if rows.peek().is_none() {
+            continue;
+        }
+        table.group(Label::Above(format!("{}:", part.name()).into()));
+        for row in rows {
+            table.row(cells(row, study.trip_current_a));
+        }
+    }
+    table
+}
+
+fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 7] {
+    let tripped = if row.seen == Seen::Untried {
+        "untried".to_owned()
+    } else {
+        format!("{} of {}", row.tripped, row.runs)
+    };
+    let is_tried = row.seen != Seen::Untried;
+    [
+        row.fault.as_str().into(),
+        Cell::from(tripped).toned(tone(row, trip_current)),
+        causes(row).into(),
+        row.after_ms
+            .map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"))
+            .into(),
+        significant(Some(row.largest_a).filter(|_| is_tried), 3).into(),
+        significant(Some(row.largest_over_max).filter(|_| is_tried), 2).into(),
+        row.torque_pct.map_or_else(|| "-".to_owned(), range).into(),
+    ]
+}
+
+/// A range in whole numbers; one number where both ends round to it.
+fn range(ends: [f64; 2]) -> String {
+    // No minus sign before a zero.
+    let [least, greatest] = ends.map(|x| x.round() as i64);
+    if least == greatest {
+        least.to_string()
+    } else {
+        format!("{least} to {greatest}")
+    }
+}
+
+/// What tripped the drive, with the number of runs where they differ.
+fn causes(row: &FaultRow) -> String {
+    let causes: Vec<String> = match row.causes[..] {
+        [one] => vec![cause(one.cause).to_owned()],
+        ref several => {
+            let each = several.iter();
+            each.map(|known| format!("{} {}", cause(known.cause), known.runs))
+                .collect()
+        }
+    };
+    let causes = causes.join(", ");
+    if row.is_false_alarm() {
+        format!("false alarm: {causes}")
+    } else {
+        causes
+    }
+}
+
+fn cause(cause: Cause) -> &'static str {
+    match cause {
+        Cause::AdcRange => "ADC range",
+        Cause::OverCurrent => "over-current",
+        Cause::Hall => "Hall code",
+        Cause::Stall => "stall",
+        Cause::Offset => "offset",
+    }
+}
+
+fn tone(row: &FaultRow, trip_current: f64) -> Tone {
+    if row.part == Part::Sound {
+        return if row.is_false_alarm() {
+            Tone::Broken
+        } else {
+            Tone::None
+        };
+    }
+    match row.seen {
+        Seen::Always | Seen::Untried => Tone::None,
+        _ if row.passes_unseen(trip_current) => Tone::Broken,
+        Seen::Sometimes => Tone::Slight,
+        Seen::Never => Tone::Marked,
+    }
+}
+
+/// What the counts mean for the board.
+const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes and, where told to, a stall. Against what shows in none of them the \
+    board needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt and a \
+    thermal limit.";
+
+/// The counts, and what follows for the board.
+fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
+    let Totals {
+        classes,
+        always,
+        sometimes,
+        never,
+        untried,
+        beyond_trip_unseen,
+        sound,
+        false_alarms,
+    } = study.totals;
+    let mut lines = vec![format!(
+        "Of {classes} faults the drive notices {always} in every run, {sometimes} in some, {never} in none; \
+         sound drives that trip: {false_alarms} of {sound}."
+    )];
+    if untried > 0 {
+        lines.push(format!(
+            "{untried} faults are untried: the sound drive trips before, at every operating point."
+        ));
+    }
+    if beyond_trip_unseen > 0 {
+        let broken = study.rows.iter().filter(|row| row.part != Part::Sound);
+        let largest = broken.filter_map(|row| row.unseen_largest_a);
+        lines.push(format!(
+            "{beyond_trip_unseen} faults let the true current pass the trip level without a trip, up to {} A.",
+            significant(largest.reduce(f64::max), 3)
+        ));
+    }
+    if measures_bus {
+        lines.push(
+            "A bus that is no longer measured trips nothing: `status().bus_is_stale` tells it."
+                .to_owned(),
+        );
+    }
+    if study.stall_timeout_s.is_none() {
+        lines.push("Stall detection is off: `stall_timeout` in [inverter] turns it on.".to_owned());
+    }
+    lines.push(HARDWARE.to_owned());
+    lines.join("\n")
+}
+
+/// Values without their repetitions, in their order.
+fn distinct(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut all: Vec<f64> = values.collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+fn listed(values: &[f64], text: impl Fn(f64) -> String) -> String {
+    let texts: Vec<String> = values.iter().map(|&value| text(value)).collect();
+    texts.join(" and ")
+}
