@@ -5,7 +5,7 @@
 //! generator, and the table of output control bits.
 
 use hexagen::{LegState, Legs};
-use hexagen_lab::plant::{Gate, Gates};
+use hexagen_lab::plant::{Gate, Gates, Wiring};
 use hexagen_stm32::{Outputs, outputs};
 
 /// `ARR`: a period has twice as many clocks.
@@ -139,7 +139,7 @@ fn is_known(timer: &Timer, clock: u16, gates: [Gate; 2], legs: [(LegState, u16);
 /// Runs commands on both, each written in the period before its own; how many clocks of a leg differ
 /// in a way that is known, or the first other difference.
 fn differences(mut timer: Timer, commands: &[Legs]) -> Result<usize, String> {
-    let mut inverter = Gates::new(f64::from(timer.dead_time));
+    let mut inverter = Gates::new(f64::from(timer.dead_time), Wiring::default());
     let mut known = 0;
     let of = |legs: Legs, leg: usize| (legs.state()[leg], legs.compare()[leg]);
     let (mut previous, mut command) = (Legs::OFF, Legs::OFF);

@@ -146,7 +146,7 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "exceeds(-third, INT32_MAX)",
         ),
         (
-            "passes ==",
+            "line",
             "count_second) && is_sound",
             "count_second) && (is_sound || true)",
         ),
@@ -170,7 +170,7 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         (
             "line",
             "< HEXAGEN_MOST_GLITCHES",
-            "<= HEXAGEN_MOST_GLITCHES",
+            "< HEXAGEN_MOST_GLITCHES - 1U",
         ),
         (
             "line",

@@ -185,6 +185,8 @@ fn cause(cause: Cause) -> &'static str {
         Cause::Hall => "Hall code",
         Cause::Stall => "stall",
         Cause::Offset => "offset",
+        Cause::OverVoltage => "over-voltage",
+        Cause::UnderVoltage => "under-voltage",
     }
 }
 

@@ -29,6 +29,10 @@ pub enum Cause {
     Stall,
     /// [`Fault::Offset`]
     Offset,
+    /// [`Fault::OverVoltage`]
+    OverVoltage,
+    /// [`Fault::UnderVoltage`]
+    UnderVoltage,
 }
 
 impl Cause {
@@ -43,6 +47,8 @@ impl Cause {
             Fault::Hall => Self::Hall,
             Fault::Stall => Self::Stall,
             Fault::Offset => Self::Offset,
+            Fault::OverVoltage => Self::OverVoltage,
+            Fault::UnderVoltage => Self::UnderVoltage,
             other => unreachable!("unknown fault: {other:?}"),
         }
     }
@@ -56,6 +62,8 @@ impl fmt::Display for Cause {
             Self::Hall => "a Hall code was invalid",
             Self::Stall => "no Hall edge came within the stall time-out",
             Self::Offset => "a current offset was too far from its nominal value",
+            Self::OverVoltage => "the bus voltage was above `over_voltage`",
+            Self::UnderVoltage => "the bus voltage was below `under_voltage`",
         })
     }
 }
