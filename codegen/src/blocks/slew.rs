@@ -68,7 +68,7 @@ impl<'b> SlewLimit<'b> {
             extra => (j << extra, Some(extra)),
         };
         named! {
-            let j_followed = goal.clamp(in_force - step, in_force + step);
+            let j_followed = goal.max(in_force - step).min(in_force + step);
         }
         let j_slewed = whole.map_or(j_followed, |extra| j_followed >> extra);
         (j_slewed.named("j_slewed"), (self.in_force, j_followed))
