@@ -3,7 +3,7 @@
 use crate::cli::{Failure, RunArguments, print_json, print_text, spinner};
 use clap::Args;
 use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
-use hexagen_lab::engine::{EngineKind, Model, Prepared};
+use hexagen_lab::engine::{EngineKind, Model, Prepared, SelectedMotor};
 use hexagen_lab::text::significant;
 use serde::Serialize;
 
@@ -31,16 +31,35 @@ pub struct Outcome {
     /// The limit.
     #[serde(flatten)]
     pub limit: SpeedLimit,
+    /// The limit of the same drive with sensors in the phases and legs that may be high all the time;
+    /// none where the board limits no leg.
+    pub without_window: Option<SpeedLimit>,
 }
 
-/// Scans for the limit.
+/// Scans for the limit, and for that without the board's window, where there is one.
 ///
 /// # Errors
 /// Diagnostics, or a plant option out of range.
-pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
+pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit, Option<SpeedLimit>), Failure> {
     let arguments = &options.run;
     let drive = arguments.prepare_for_torque()?;
-    let torque = arguments.torque(&drive);
+    let limit = scan(arguments, &drive)?;
+    let inverter = &drive.spec.inverter;
+    let has_window = inverter.window().is_some() || inverter.minimum_low_time > 0.0;
+    let free = if has_window {
+        let motor = SelectedMotor::find(&arguments.motor, &arguments.plant.options())?;
+        let free = motor.without_window()?;
+        let free = free.prepare_for_torque(arguments.controller.as_deref())?;
+        Some(scan(arguments, &free)?)
+    } else {
+        None
+    };
+    Ok((drive, limit, free))
+}
+
+/// The limit of a drive.
+fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failure> {
+    let torque = arguments.torque(drive);
     if torque == 0.0 {
         return Err(Failure::Argument(
             "--torque 0: the limit needs a torque; give one that is not 0".to_owned(),
@@ -51,9 +70,9 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
             "--inertia: the limit is measured at fixed speeds; remove it".to_owned(),
         ));
     }
-    let plant = arguments.plant.plant(&drive)?;
-    let run = arguments.plant.options().run(&drive, 1.0, torque);
-    let set_point = arguments.plant.set_point(&drive, torque);
+    let plant = arguments.plant.plant(drive)?;
+    let run = arguments.plant.options().run(drive, 1.0, torque);
+    let set_point = arguments.plant.set_point(drive, torque);
     let scan = LimitOptions::new(drive.rated_rpm(), torque);
     let progress = spinner("scanning speeds");
     let limit = speed_limit(
@@ -63,7 +82,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
         drive.maker(arguments.model(), set_point),
     );
     progress.finish_and_clear();
-    Ok((drive, limit?))
+    Ok(limit?)
 }
 
 /// Runs the command.
@@ -71,7 +90,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit), Failure> {
 /// # Errors
 /// As [`collect`], or a drive that tripped above its limit.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (drive, limit) = collect(options)?;
+    let (drive, limit, without_window) = collect(options)?;
     let model = options.run.model();
     let outcome = Outcome {
         motor: drive.motor.clone(),
@@ -80,6 +99,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         engine: (model == Model::Fixed).then(|| drive.engine_kind()),
         torque_nm: options.run.torque(&drive),
         limit,
+        without_window,
     };
     if options.run.json {
         print_json(&outcome)?;
@@ -90,15 +110,32 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
-    let why = outcome.limit.why().unwrap_or_default();
-    let found = match (
-        outcome.limit.outcome,
-        outcome.limit.limit_rpm,
-        outcome.limit.limit_pct,
-    ) {
+    let free = outcome
+        .without_window
+        .as_ref()
+        .map_or_else(String::new, |free| {
+            format!(
+                "; with sensors in the phases and legs that may be high all the time {}",
+                found(free, outcome.torque_nm, drive)
+            )
+        });
+    print_text(&format!(
+        "{}, {} ({:?}): {} Nm {}{free}",
+        outcome.motor,
+        outcome.controller,
+        outcome.model,
+        significant(outcome.torque_nm, 4),
+        found(&outcome.limit, outcome.torque_nm, drive)
+    ))
+}
+
+/// A limit in words.
+fn found(limit: &SpeedLimit, torque: f64, drive: &Prepared) -> String {
+    let why = limit.why().unwrap_or_default();
+    match (limit.outcome, limit.limit_rpm, limit.limit_pct) {
         (LimitOutcome::NeverHeld, _, _) | (_, None, _) | (_, _, None) => {
             let reach = drive.reach();
-            let limited = if reach < outcome.torque_nm.abs() {
+            let limited = if reach < torque.abs() {
                 format!(
                     "; max_current = {} A limits the set-point to {} Nm",
                     drive.spec.inverter.max_current,
@@ -107,8 +144,8 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
             } else {
                 String::new()
             };
-            let found = outcome.limit.curve.first().map_or(String::new(), |point| {
-                let share = percent(point.1, outcome.torque_nm, 0.0);
+            let found = limit.curve.first().map_or(String::new(), |point| {
+                let share = percent(point.1, torque, 0.0);
                 format!(" ({} % of it at {:.0} rpm)", significant(share, 3), point.0)
             });
             format!("not held even at the first speed: {why}{found}{limited}")
@@ -119,12 +156,5 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
         (LimitOutcome::NotReached, Some(rpm), Some(percent)) => {
             format!("held beyond {rpm:.0} rpm, {percent:.1} % of rated speed, where the scan ends")
         }
-    };
-    print_text(&format!(
-        "{}, {} ({:?}): {} Nm {found}",
-        outcome.motor,
-        outcome.controller,
-        outcome.model,
-        significant(outcome.torque_nm, 4)
-    ))
+    }
 }

@@ -563,3 +563,30 @@ fn records_of_slow_runs_are_bounded_and_hold_whole_turns() {
     let (_, at_rest) = RunOptions::new(0.0, 20.0).periods(&plant);
     assert_eq!(at_rest, 1000);
 }
+
+/// What low-side sensors cost is told beside the limit.
+#[test]
+fn limit_tells_what_the_window_of_low_side_sensors_costs() {
+    let common = [
+        "limit",
+        "hurst-long",
+        "--board",
+        "vesc-4",
+        "--controller",
+        "pdcc",
+    ];
+    let options = ["--start-angle", "0.1"];
+    let result = run(common.iter().chain(&options).chain(&["--json"])).json();
+    let limited = number(&result, "limit_rpm");
+    let free = number(&result["without_window"], "limit_rpm");
+    assert!(limited < free, "{limited} {free}");
+    let text = run(common.iter().chain(&options)).stdout;
+    assert!(
+        text.contains(
+            "; with sensors in the phases and legs that may be high all the time held up to"
+        ),
+        "{text}"
+    );
+    let result = run(["limit", PAPER, "--start-angle", "0.1", "--json"]).json();
+    assert!(result["without_window"].is_null(), "{result}");
+}

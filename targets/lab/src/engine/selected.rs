@@ -80,6 +80,31 @@ impl SelectedMotor {
         Ok(Self { source, ast })
     }
 
+    /// The same motor on a board that leaves every leg free: current sensors in the phases, and legs
+    /// that may be high all the time.
+    ///
+    /// # Errors
+    /// None for a specification that can be read.
+    pub fn without_window(&self) -> Result<Self, LabError> {
+        const OF_WINDOW: [&str; 6] = [
+            "current_sensing",
+            "settling_time",
+            "aperture_time",
+            "conversion_time",
+            "sampling_lead",
+            "minimum_low_time",
+        ];
+        let mut free = self.clone();
+        let fields = &mut free.ast.inverter.fields;
+        fields.retain(|field| !OF_WINDOW.contains(&field.name.as_str()));
+        let lines = "[inverter]\ncurrent_sensing = \"in_phase\"\nminimum_low_time = \"0 s\"\n";
+        let mut over = parse_toml(lines, "sensors in the phases")?;
+        over.name = free.ast.name.clone();
+        over.inverter.location = None;
+        free.ast.overlay(over);
+        Ok(free)
+    }
+
     /// Takes a variant through the generator; `None`: the controller of the motor's file.
     ///
     /// # Errors
