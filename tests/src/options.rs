@@ -54,6 +54,9 @@ pub type Meeting = ((usize, usize), (usize, usize));
 /// Placeholder of a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
+/// Placeholder of a voltage of a quarter of the motor's bus.
+const FADE: &str = "\"fade\"";
+
 /// Values rejected by every drive of a kind: kind, option, value.
 const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
 
@@ -149,6 +152,16 @@ const SHARED: &[Row] = &[
                     ("inverter", "bus_adc_range", BUS_RANGE),
                     ("inverter", "over_voltage", "\"0 V\""),
                     ("inverter", "under_voltage", "\"0 V\""),
+                ],
+            ),
+            (
+                "fading",
+                &[
+                    ("inverter", "v_bus", "\"measured\""),
+                    ("inverter", "bus_adc_bits", "12"),
+                    ("inverter", "bus_adc_range", BUS_RANGE),
+                    ("inverter", "braking_fade", FADE),
+                    ("inverter", "motoring_fade", FADE),
                 ],
             ),
         ],
@@ -505,15 +518,16 @@ impl Kind {
                 .expect("a TOML value")["x"]
                 .clone()
         };
-        let bus_range = document_bus(&document) * 1.6;
+        let bus = document_bus(&document);
+        let volts = |share: f64| text(&format!("\"{} V\"", bus * share));
         document["controller"] = Item::Table(Table::new());
         document["controller"]["kind"] = text(&format!("\"{}\"", self.name));
         for (axis, &value) in self.axes.iter().zip(choice) {
             for (section, field, setting) in &axis.values[value].settings {
-                document[*section][*field] = if *setting == BUS_RANGE {
-                    text(&format!("\"{bus_range} V\""))
-                } else {
-                    text(setting)
+                document[*section][*field] = match setting.as_str() {
+                    BUS_RANGE => volts(1.6),
+                    FADE => volts(0.25),
+                    _ => text(setting),
                 };
             }
         }

@@ -6,6 +6,7 @@
 mod common_mode;
 mod commutation;
 mod emf;
+mod fade;
 mod limit;
 mod measure;
 mod modulate;
@@ -21,6 +22,7 @@ pub use emf::{
     Corner, ModelledEmf, SHAPE_BITS, model_emf, model_target_emf, proportional_reference,
     proportional_shape, quasi_square_reference,
 };
+pub use fade::{Allowed, BusFade};
 pub use limit::{Hexagon, Limited, Priority};
 pub use measure::{Hall, Sample, find_sector, sample, sector_of, sector_word, third_current};
 pub use modulate::{

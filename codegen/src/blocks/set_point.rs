@@ -142,6 +142,11 @@ impl<'b> SetPointWords<'b> {
         }
     }
 
+    /// A measured bus voltage, words of voltage.
+    pub fn told_bus(&self) -> Option<Expr<'b>> {
+        self.bus.map(|bus| bus.volts.read())
+    }
+
     /// The bus as the step sees it; call inside an open stage.
     pub fn read_bus(&self, l: &Lowering<'b>) -> Bus<'b> {
         let Some(BusWords { volts, ratio }) = self.bus else {

@@ -1,9 +1,9 @@
 //! The PI speed regulator (semantics of predictive deadbeat, "Speed loop").
 
-use super::{Lowering, Rotor, round_down};
+use super::{Allowed, Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Param, Real, named};
+use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Named, Param, Real, named};
 use crate::spec::{Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
@@ -129,8 +129,14 @@ impl<'b> SpeedRegulator<'b> {
         l.rounded_number(name, top, Exact::Number(Real::of(exact)), doc)
     }
 
-    /// The current set-point from the speed error, within +-`most`.
-    pub fn regulate(&self, l: &Lowering<'b>, rotor: &Rotor<'b>, most: Expr<'b>) -> Regulated<'b> {
+    /// The current set-point from the speed error, within +-`most` and what the bus allows.
+    pub fn regulate(
+        &self,
+        l: &Lowering<'b>,
+        rotor: &Rotor<'b>,
+        most: Expr<'b>,
+        allowed: Option<Allowed<'b>>,
+    ) -> Regulated<'b> {
         let [k_speed, k_share] = self.coefficients(l);
         l.b.stage(
             "regulate_speed",
@@ -152,6 +158,10 @@ impl<'b> SpeedRegulator<'b> {
             let j_most = most.abs();
             let j_regulated = j_open.within(j_most);
         }
+        let j_regulated = match allowed {
+            Some(allowed) => allowed.limit(j_regulated).named("j_faded"),
+            None => j_regulated,
+        };
         let tracking = (j_regulated - j_open) << TRACKING_LOG2;
         let moved = integral + k_share * (speed_part + tracking);
         named! {

@@ -145,6 +145,8 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         max,
         under,
         over,
+        braking,
+        motoring,
         ..
     } = inverter.bus
     {
@@ -153,6 +155,15 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             .filter(|(level, _)| *level > 0.0)
             .map(|(level, way)| format!("{way} {}", engineering(level, "V")))
             .collect();
+        for (fade, what) in [(braking, "Braking"), (motoring, "Motoring")] {
+            if let Some(fade) = fade {
+                lines.push(format!(
+                    "{what} torque falls from {} to 0 at {} of the bus.",
+                    engineering(fade.full, "V"),
+                    engineering(fade.none, "V")
+                ));
+            }
+        }
         if !levels.is_empty() {
             lines.push(format!(
                 "A bus voltage {} trips it, when `set_bus` tells so.",

@@ -161,7 +161,35 @@ pub enum BusSource {
         under: f64,
         /// Voltage above which the drive trips, volt; 0 for none.
         over: f64,
+        /// Fade of braking torque towards the greatest voltage.
+        braking: Option<Fade>,
+        /// Fade of motoring torque towards the least voltage.
+        motoring: Option<Fade>,
     },
+}
+
+/// Bus voltages between which the largest set-point falls in proportion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fade {
+    /// At which, and on its other side, it is whole, volt.
+    pub full: f64,
+    /// At which, and beyond, it is 0, volt.
+    pub none: f64,
+}
+
+impl Fade {
+    /// The share of a fade's width, next to the voltage that trips, in which there is no torque: what
+    /// ripple and a slow measurement still put into the bus must not end in a trip.
+    const SPARE: f64 = 0.25;
+
+    /// The fade of a width towards a level, both volt.
+    pub fn towards(level: f64, width: f64, is_upper: bool) -> Self {
+        let way = if is_upper { -1.0 } else { 1.0 };
+        Self {
+            full: level + way * width,
+            none: level + way * Self::SPARE * width,
+        }
+    }
 }
 
 /// How rotor position reaches the controller between Hall edges.

@@ -47,6 +47,8 @@ impl Spec {
                 adc_bits,
                 min,
                 max,
+                braking,
+                motoring,
                 ..
             } => {
                 text.word("bus", "measured");
@@ -57,6 +59,11 @@ impl Spec {
                 let counts = inverter.bus_counts();
                 if counts != [0, u16::MAX] {
                     text.number("bus_counts", counts);
+                }
+                for (key, fade) in [("braking_fade", braking), ("motoring_fade", motoring)] {
+                    if let Some(fade) = fade {
+                        text.number(key, [fade.full, fade.none]);
+                    }
                 }
             }
         }

@@ -78,6 +78,8 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("bus_max", &[D::Voltage], 1.0, 4000.0, "60 V"),
     quantity("over_voltage", &[D::Voltage], 0.0, 4000.0, "58 V"),
     quantity("under_voltage", &[D::Voltage], 0.0, 2000.0, "38 V"),
+    quantity("braking_fade", &[D::Voltage], 0.0, 2000.0, "4 V"),
+    quantity("motoring_fade", &[D::Voltage], 0.0, 2000.0, "4 V"),
     quantity("f_pwm", &[D::Frequency], 500.0, 500e3, "20 kHz"),
     quantity("sampling_time", &[D::Time], 2e-6, 2e-3, "50 us"),
     quantity("timer_clock", &[D::Frequency], 100e3, 1e9, "72 MHz"),

@@ -90,6 +90,10 @@ pub struct Inverter {
     /// Least and greatest ADC count of the bus voltage without a fault. Measured bus only.
     #[serde(default = "any_count")]
     pub bus_counts: [u16; 2],
+    /// Bus voltages of the whole set-point and of none, volt, for braking torque.
+    pub braking_fade: Option<[f64; 2]>,
+    /// The same for motoring torque.
+    pub motoring_fade: Option<[f64; 2]>,
     /// Control period, seconds.
     pub t_s: f64,
     /// Timer counts of a duty of one.

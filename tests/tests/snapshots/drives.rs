@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 21] = [
+const VARIANTS: [(&str, &str, Fields); 22] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -63,6 +63,17 @@ const VARIANTS: [(&str, &str, Fields); 21] = [
         "pdcc.speed-loop",
         "pdcc:speed_loop=on",
         &[("motor", "inertia", "3 kg cm2")],
+    ),
+    (
+        "pdcc.fades",
+        "pdcc",
+        &[
+            ("inverter", "v_bus", "measured"),
+            ("inverter", "bus_adc_bits", "12"),
+            ("inverter", "bus_adc_range", "80 V"),
+            ("inverter", "braking_fade", "4 V"),
+            ("inverter", "motoring_fade", "4 V"),
+        ],
     ),
     (
         "pdcc.slew-rate",

@@ -713,7 +713,7 @@ pub fn unreadable_leg(
         Code::UnreadableLeg,
         at,
         format!(
-            "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with `sensed_phases: abc` or `current_sensing: in_phase`",
+            "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with `current_sensing: in_phase`",
             option, value, phases.given, instead,
         ),
     );
@@ -726,7 +726,7 @@ pub fn legs_held_high(at: &Location, name: &str, given: &str, kind: &str) -> Dia
         Code::LegsHeldHigh,
         at,
         format!(
-            "`{name}`: {given} needs legs that are low for a while in every period, but `{kind}` with these options holds legs high for whole periods; choose three pulsed legs: `pdcc` or `pi-pwm` with `modulation: three_phase`, or `p-pwm`"
+            "`{name}`: {given} needs legs that are low for a while in every period, but `{kind}` with these options holds legs high for whole periods; choose three pulsed legs: `pdcc` with `modulation: three_phase`, `pi-pwm` with `six_step: off`, or `p-pwm`"
         ),
     )
 }

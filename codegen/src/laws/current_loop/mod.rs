@@ -21,7 +21,7 @@ use crate::blocks::{
     advanced_sector, find_sector, proportional_reference, proportional_shape,
     quasi_square_reference, sample, sector_of, sense_direction, third_current,
 };
-use crate::ir::{Coefficient, Expr, Memory, Phase, Phases, ProgramBuilder, Told, named};
+use crate::ir::{Coefficient, Expr, Memory, Named, Phase, Phases, ProgramBuilder, Told, named};
 use crate::scaling::Lowered;
 use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
 
@@ -153,13 +153,18 @@ impl<'b> CurrentLoop<'_, 'b> {
         };
         let sector = tracked.ahead.unwrap_or(sector_seen);
         let j = set_point.j.read();
+        let fade = words.fade.zip(set_point.told_bus()).zip(tracked.direction);
+        let allowed = fade.map(|((fade, v_bus), direction)| fade.allowed(l, v_bus, direction));
         let regulated = words.speed.zip(tracked.rotor);
-        let regulated = regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j));
+        let regulated =
+            regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j, allowed));
         let slewed = words.slew.map(|slew| slew.follow(l, j));
         let j = match (regulated, slewed) {
             (Some(regulated), _) => regulated.j,
-            (None, Some((slewed, _))) => slewed,
-            (None, None) => j,
+            (None, slewed) => {
+                let j = slewed.map_or(j, |(slewed, _)| slewed);
+                allowed.map_or(j, |allowed| allowed.limit(j).named("j_faded"))
+            }
         };
         let commutation = self.commutation(&words, &tracked, [sector, j], currents);
         // Before the reference, so that the reference's product with a sign is added last.

@@ -3,7 +3,7 @@
 use super::CurrentLoop;
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{
-    CommutationRule, RotorWords, SlewLimit, SpeedRegulator, direction_word, sector_word,
+    BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator, direction_word, sector_word,
 };
 use crate::ir::{Interval, Memory};
 use crate::spec::{EmfSource, Reference};
@@ -54,6 +54,8 @@ pub struct Words<'b> {
     pub rotor: Option<RotorWords<'b>>,
     /// The speed regulator.
     pub speed: Option<SpeedRegulator<'b>>,
+    /// Fade of the set-point with the bus voltage.
+    pub fade: Option<BusFade>,
     /// Slew rate of the set-point.
     pub slew: Option<SlewLimit<'b>>,
     /// Commutation.
@@ -99,6 +101,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (l, options, needs) = (self.l, self.options, self.needs);
         let (estimated, observes) = (self.uses(EmfSource::Estimated), self.observes());
         let needs_rotor = self.needs_rotor();
+        let fade = BusFade::new(l, set_point.j, set_point.gain.value);
+        let needs_direction = needs.commutation || fade.is_some();
         // The EMF of the last period is computed.
         let sees = estimated || observes;
         let e_bound = self.e_bound();
@@ -111,12 +115,13 @@ impl<'b> CurrentLoop<'_, 'b> {
         let is_delayed = options.delay == 1;
         let needs_command = is_delayed && !needs.off_leg && !self.holds_emf();
         Words {
-            sector_prev: (needs_rotor || needs.commutation).then(|| sector_word(l)),
+            sector_prev: (needs_rotor || needs_direction).then(|| sector_word(l)),
             rotor: needs_rotor.then(|| RotorWords::new(l)),
-            direction: (needs.commutation && !needs_rotor).then(|| direction_word(l)),
+            direction: (needs_direction && !needs_rotor).then(|| direction_word(l)),
             speed: options.speed.zip(set_point.speed).map(|(options, words)| {
                 SpeedRegulator::new(l, options, words, set_point.gain.value)
             }),
+            fade,
             slew: options
                 .slew_rate
                 .map(|rate| SlewLimit::new(l, rate, set_point.j, set_point.gain.value)),

@@ -8,7 +8,7 @@ use crate::spec::model::period_within;
 use crate::spec::schema;
 use crate::spec::sensing::CurrentSensor;
 use crate::spec::units::Dimension;
-use crate::spec::{BusSource, SensedPhases};
+use crate::spec::{BusSource, Fade, SensedPhases};
 
 /// The inverter data that could be read.
 pub(super) struct Inverter<'a> {
@@ -97,13 +97,15 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
 }
 
 /// Fields of a measured bus.
-const OF_MEASURED: [&str; 6] = [
+const OF_MEASURED: [&str; 8] = [
     "bus_adc_bits",
     "bus_adc_range",
     "bus_min",
     "bus_max",
     "over_voltage",
     "under_voltage",
+    "braking_fade",
+    "motoring_fade",
 ];
 
 /// Fixed or measured bus; a measured one needs its ADC and takes limits.
@@ -115,6 +117,7 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
     let max = reader.plain_quantity(errors, "bus_max");
     let over = reader.plain_quantity(errors, "over_voltage");
     let under = reader.plain_quantity(errors, "under_voltage");
+    let fades = ["braking_fade", "motoring_fade"].map(|name| reader.plain_quantity(errors, name));
     let measured = reader
         .word(errors, "v_bus", &[("fixed", false), ("measured", true)])
         .or_else(|| reader.field("v_bus").is_none().then_some(false))?;
@@ -194,6 +197,7 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
             ));
         }
     });
+    let [braking, motoring] = fades;
     let gain = range.si / f64::from(1_u32 << adc_bits);
     if gain > COARSEST_BUS * nominal.si * (1.0 + 1e-9) {
         let full = f64::from(1_u32 << adc_bits);
@@ -212,7 +216,47 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
         max: high,
         under,
         over,
+        braking: fade(
+            &braking,
+            [nominal.si, reached(over, high, f64::min)],
+            errors,
+        ),
+        motoring: fade(
+            &motoring,
+            [nominal.si, reached(under, low, f64::max)],
+            errors,
+        ),
     })
+}
+
+/// The first of the levels that a voltage reaches, volt: that of a trip, 0 for none, or the limit of
+/// the measurement.
+fn reached(trip: f64, limit: f64, first: fn(f64, f64) -> f64) -> f64 {
+    if trip > 0.0 {
+        first(trip, limit)
+    } else {
+        limit
+    }
+}
+
+/// A fade of the torque from the nominal voltage at most towards a level; none without a width.
+fn fade(width: &Option<Given>, [nominal, level]: [f64; 2], errors: &mut Collector) -> Option<Fade> {
+    let width = width.as_ref().filter(|width| width.si > 0.0)?;
+    let most = (level - nominal).abs();
+    if width.si > most * (1.0 + 1e-9) {
+        errors.push(catalogue::out_of_limits(
+            &width.part.location,
+            &width.part.field,
+            &width.part.given,
+            "0 V",
+            &format!(
+                "{}, from `bus_voltage` to {}",
+                engineering(at_most(most), "V"),
+                engineering(level, "V")
+            ),
+        ));
+    }
+    Some(Fade::towards(level, width.si, level > nominal))
 }
 
 /// A voltage that trips, volt, 0 for none: by default the limit of the measurement. `check` takes a

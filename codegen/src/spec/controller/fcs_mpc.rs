@@ -150,7 +150,7 @@ impl Options for FcsMpcSpec {
         self.pairs().then_some(TurnsOff {
             option: "candidates",
             value: self.candidates.word(),
-            instead: "candidates: three_phase",
+            instead: "controller: pdcc",
         })
     }
 

@@ -167,7 +167,7 @@ impl Options for PhccSpec {
         (self.candidates == PhccCandidates::Table2).then_some(TurnsOff {
             option: "candidates",
             value: "table2",
-            instead: "candidates: three_phase",
+            instead: "controller: pdcc",
         })
     }
 

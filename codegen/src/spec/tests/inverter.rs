@@ -3,7 +3,7 @@
 
 use crate::diagnostics::Code;
 use crate::pipeline::{generate, warnings};
-use crate::spec::{HallCapture, Origins, Spec, check, parse_toml};
+use crate::spec::{BusSource, HallCapture, Origins, Spec, check, parse_toml};
 
 const MOTOR: &str = r#"[motor]
 pole_pairs = 4
@@ -365,4 +365,60 @@ fn a_measured_bus_trips_at_its_limits_or_where_told() {
         "kind = \"pdcc\"",
     );
     assert!(fixed.is_err_and(|told| told.contains("`over_voltage`")));
+}
+
+#[test]
+fn fades_end_a_quarter_of_their_width_before_the_voltage_that_trips() {
+    let fades = |lines: &str| {
+        let inverter = format!(
+            "{TIMER}adc_range = \"40 A\"\nv_bus = \"measured\"\nbus_adc_bits = 12\n\
+             bus_adc_range = \"81.92 V\"\n{lines}"
+        );
+        let checked = try_check(&inverter, "kind = \"pdcc\"");
+        checked.map(|(spec, _)| match spec.inverter.bus {
+            BusSource::Measured {
+                braking, motoring, ..
+            } => [braking, motoring].map(|fade| fade.map(|fade| [fade.full, fade.none])),
+            BusSource::Fixed => panic!("a fixed bus"),
+        })
+    };
+    assert_eq!(fades(""), Ok([None, None]));
+    assert_eq!(fades("braking_fade = \"0 V\""), Ok([None, None]));
+    let both = "braking_fade = \"4 V\"\nmotoring_fade = \"8 V\"\n";
+    // The lower of the trip and the limit of the measurement, or the higher.
+    let told = fades(&format!(
+        "{both}over_voltage = \"58 V\"\nunder_voltage = \"36 V\""
+    ));
+    assert_eq!(told, Ok([Some([54.0, 57.0]), Some([44.0, 38.0])]));
+    let told = fades(&format!(
+        "{both}bus_max = \"60 V\"\nover_voltage = \"70 V\"\nbus_min = \"32 V\"\nunder_voltage = \"0 V\""
+    ));
+    assert_eq!(told, Ok([Some([56.0, 59.0]), Some([40.0, 34.0])]));
+    let told = fades("braking_fade = \"20 V\"\nbus_max = \"60 V\"").expect_err("too wide");
+    assert!(
+        told.contains("`braking_fade`: 20 V lies outside 0 V to 12 V, from `bus_voltage` to 60 V"),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_slew_rate_is_the_rated_current_in_a_minute_at_least_and_not_beside_a_speed_loop() {
+    let rate = |options: &str| {
+        let inverter = format!("{TIMER}adc_range = \"40 A\"");
+        let checked = try_check(&inverter, &format!("kind = \"pdcc\"\n{options}"));
+        checked.map(|(spec, _)| spec.controller.common().slew_rate)
+    };
+    assert_eq!(rate(""), Ok(None));
+    assert_eq!(rate("slew_rate = \"0.4 A/ms\""), Ok(Some(400.0)));
+    let told = rate("slew_rate = \"300 mA/s\"").expect_err("too slow");
+    assert!(
+        told.contains(
+            "`slew_rate`: 300 mA/s lies outside 333.4 mA/s (`rated_current` in a minute) to 1 GA/s"
+        ),
+        "{told}"
+    );
+    let told = rate("slew_rate = \"20 V/s\"").expect_err("no such quantity");
+    assert!(told.contains("slew_rate"), "{told}");
+    let told = rate("speed_loop = \"on\"\nslew_rate = \"400 A/s\"").expect_err("both");
+    assert!(told.contains("`slew_rate`"), "{told}");
 }

@@ -8,6 +8,7 @@
 mod applied;
 mod constants;
 mod emf;
+mod fade;
 mod law;
 mod limit;
 mod motion;
@@ -29,6 +30,7 @@ use crate::exact::{
 };
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use constants::{Constants, Scale};
+use fade::Fade;
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
 use parts::Part;
@@ -47,6 +49,7 @@ pub struct BitTrue<W: Word = f64> {
     law: Law<W>,
     speed: Option<Regulator<W>>,
     slew: Option<Slew>,
+    fade: Option<Fade<W>>,
     /// Volt per ampere of the set-point.
     gain: f64,
     // Set-point words.
@@ -118,6 +121,7 @@ impl<W: Word> BitTrue<W> {
             speed_ref: word(0.0),
             speed,
             slew: Slew::new(spec, &scale, &k)?,
+            fade: Fade::new(spec, &scale)?,
             v_bus: word(k.v_bus_nominal),
             gain: reference_gain(spec),
             ratio: word(pow2(k.ratio_bits as i32)),
@@ -351,10 +355,16 @@ impl<W: Word> BitTrue<W> {
         if let Some(slew) = &self.slew {
             (j, j_in_force) = slew.follow(j, j_in_force);
         }
+        let direction = self.state.timing.direction;
+        let fade = self.fade.as_ref();
+        let allowed = fade.map_or([None; 2], |fade| fade.allowed(self.v_bus, direction));
         let mut speed_integral = self.state.speed_integral;
         if let Some(speed) = &self.speed {
-            let turning = self.state.timing.direction * self.state.omega;
-            (j, speed_integral) = speed.regulate(self.speed_ref, turning, j, speed_integral);
+            let turning = direction * self.state.omega;
+            let wanted = (self.speed_ref, turning);
+            (j, speed_integral) = speed.regulate(wanted, j, allowed, speed_integral);
+        } else {
+            j = fade::limited(allowed, j);
         }
 
         // 5 commutation

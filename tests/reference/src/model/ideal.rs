@@ -89,6 +89,8 @@ pub struct Ideal {
     speed_loop: Option<SpeedLoop>,
     /// Greatest change of the set-point in a period, ampere; 0 for any.
     slew_step: f64,
+    /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
+    fades: [Option<[f64; 2]>; 2],
     // Set-points.
     current: f64,
     /// The speed set-point, mechanical rad/s.
@@ -139,6 +141,7 @@ impl Ideal {
             pp_t_s: pole_pairs * inverter.t_s,
             speed_loop: SpeedLoop::new(spec),
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
+            fades: [inverter.braking_fade, inverter.motoring_fade],
             current: if spec.loop_options().has_speed_loop() {
                 inverter.max_current
             } else {
@@ -311,10 +314,14 @@ impl Ideal {
             current = current.clamp(before - self.slew_step, before + self.slew_step);
         }
         let current_in_force = current;
+        let direction = self.state.timing.direction;
+        let allowed = self.allowed(direction);
         if let Some(speed_loop) = &self.speed_loop {
-            let speed = self.electrical_speed() * self.state.timing.direction;
+            let wanted = (self.speed, self.electrical_speed() * direction);
             (current, speed_integral) =
-                speed_loop.regulate(self.speed, speed, current, speed_integral);
+                speed_loop.regulate(wanted, current, allowed, speed_integral);
+        } else {
+            current = current.max(allowed[0]).min(allowed[1]);
         }
 
         // 5 commutation
@@ -475,6 +482,20 @@ impl Ideal {
             run,
         };
         command.duties
+    }
+
+    /// Least and greatest current at the bus voltage, by the fades.
+    fn allowed(&self, direction: f64) -> [f64; 2] {
+        let share = |fade: Option<[f64; 2]>| {
+            fade.map_or(f64::INFINITY, |[full, none]| {
+                let share = (self.v_bus - none) / (full - none);
+                self.max_current * share.clamp(0.0, 1.0)
+            })
+        };
+        let [braking, motoring] = self.fades.map(share);
+        let backward = if direction == 1.0 { braking } else { motoring };
+        let forward = if direction == -1.0 { braking } else { motoring };
+        [-backward, forward]
     }
 
     /// Electrical angle per tick, radians; 0 while unknown.

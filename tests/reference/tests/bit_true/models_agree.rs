@@ -217,6 +217,7 @@ fn distance(u: [f64; 2], v: [f64; 2]) -> f64 {
 fn in_every_variant() {
     let mut variants = variants::all();
     variants.extend(variants::others());
+    variants.extend(variants::limited());
     let mut overall = Worst::default();
     for (seed, variant) in (0..).zip(&variants) {
         let worst = follow(variant, seed);

@@ -249,6 +249,32 @@ rev_min = {rev_min}
 {controller}
 "#
     );
+    variant_of(name, toml)
+}
+
+/// One in seven of all these variants, with a fade of the set-point where the bus is measured, else with
+/// a slew rate; without PHCC, which decides by the sign of the set-point: within a word of 0 the
+/// rounding of the two models differs in it.
+pub fn limited() -> Vec<Variant> {
+    let variants = all().into_iter().chain(others()).step_by(7);
+    variants
+        .filter(|variant| !matches!(variant.spec.controller, Controller::Phcc(_)))
+        .map(|variant| {
+            let faded = variant.toml.replace(
+                "bus_max = 390.0\n",
+                "bus_max = 390.0\nbraking_fade = [250.0, 380.0]\nmotoring_fade = [120.0, 50.0]\n",
+            );
+            let toml = if faded == variant.toml {
+                format!("{faded}slew_rate = 3000.0\n")
+            } else {
+                faded
+            };
+            variant_of(format!("{} limited", variant.name), toml)
+        })
+        .collect()
+}
+
+fn variant_of(name: String, toml: String) -> Variant {
     let spec = Spec::from_toml(&toml).expect("a valid specification");
     Variant {
         formats: formats(&spec),
@@ -324,6 +350,9 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ),
         ("k_advance", shift(options.advance.max(1.0))),
         ("k_bus", shift(0.1 / w * scale)),
+        ("k_braking", shift(inverter.max_current * gain / 130.0)),
+        ("k_motoring", shift(inverter.max_current * gain / 70.0)),
+        ("j_in_force", f_v + 1),
         ("ratio", 24),
         ("scale", 30),
         ("shape", shift(peak)),

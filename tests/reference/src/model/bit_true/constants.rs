@@ -272,10 +272,11 @@ impl<W: Word> Constants<W> {
             .unwrap_or(0);
         let factors = if motion.turns { 1 } else { 2 };
         let slope = motion.per_product * w / two_v * pow2(word - factors * q);
+        let fades = inverter.braking_fade.is_some() || inverter.motoring_fade.is_some();
         Ok(Self {
             parts: Parts::new(&[
-                (Part::Edges, rotor || commutation.is_some()),
-                (Part::Direction, rotor || commutation.is_some()),
+                (Part::Edges, rotor || commutation.is_some() || fades),
+                (Part::Direction, rotor || commutation.is_some() || fades),
                 (Part::Rotor, rotor),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Slew, variant.options.slew_rate > 0.0),

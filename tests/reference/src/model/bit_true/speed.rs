@@ -1,6 +1,7 @@
 //! The speed controller (section "Speed loop").
 
 use super::constants::{Constants, Scale};
+use super::fade::limited;
 use crate::exact::{
     Coefficient, Word, floor, floor_constant, floor_weighted, input, pow2, within, word,
 };
@@ -62,13 +63,19 @@ impl<W: Word> Regulator<W> {
             .mul(within(input(bits), -self.max_bits, self.max_bits))
     }
 
-    /// The set-point, and the integral after the step.
+    /// The set-point, within +-`most` and the limits of the bus, and the integral after the step.
     #[inline]
-    pub fn regulate(&self, reference: W, speed: W, most: W, integral: W) -> (W, W) {
+    pub fn regulate(
+        &self,
+        (reference, speed): (W, W),
+        most: W,
+        allowed: [Option<W>; 2],
+        integral: W,
+    ) -> (W, W) {
         let error = within(reference - speed, -self.error_max, self.error_max);
         let part = self.k_speed.mul(error);
         let open = part + floor_weighted(integral, self.to_voltage);
-        let j = within(open, -most.abs(), most.abs());
+        let j = limited(allowed, within(open, -most.abs(), most.abs()));
         let moved = integral + self.k_speed_share.mul(part + (j - open) * 4.0);
         (
             j,

@@ -35,13 +35,20 @@ impl SpeedLoop {
         speed.clamp(-self.greatest, self.greatest)
     }
 
-    /// The current, and the integral after the step, ampere; `angle` is the electrical angle per
-    /// tick.
-    pub fn regulate(&self, wanted: f64, angle: f64, most: f64, integral: f64) -> (f64, f64) {
+    /// The current, within +-`most` and the limits of the bus, and the integral after the step, ampere;
+    /// `angle` is the electrical angle per tick.
+    pub fn regulate(
+        &self,
+        (wanted, angle): (f64, f64),
+        most: f64,
+        [least, greatest]: [f64; 2],
+        integral: f64,
+    ) -> (f64, f64) {
         let limit = 2.0 * self.max_current;
         let part = (self.gain * (wanted - angle * self.per_tick)).clamp(-limit, limit);
         let open = part + integral;
         let current = open.clamp(-most.abs(), most.abs());
+        let current = current.max(least).min(greatest);
         let moved = integral + self.share * (part + 4.0 * (current - open));
         (current, moved.clamp(-self.max_current, self.max_current))
     }
