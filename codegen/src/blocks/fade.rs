@@ -75,12 +75,12 @@ impl BusFade {
         named! {
             let j_braking = braking;
             let j_motoring = motoring;
-            let j_forward = direction.is(-1).choose(j_braking, j_motoring);
-            let j_backward = direction.is(1).choose(j_braking, j_motoring);
+            let j_most = direction.is(-1).choose(j_braking, j_motoring);
+            let j_least = -direction.is(1).choose(j_braking, j_motoring);
         }
         Allowed {
-            least: -j_backward,
-            most: j_forward,
+            least: j_least,
+            most: j_most,
         }
     }
 

@@ -419,6 +419,15 @@ fn a_slew_rate_is_the_rated_current_in_a_minute_at_least_and_not_beside_a_speed_
     );
     let told = rate("slew_rate = \"20 V/s\"").expect_err("no such quantity");
     assert!(told.contains("slew_rate"), "{told}");
-    let told = rate("speed_loop = \"on\"\nslew_rate = \"400 A/s\"").expect_err("both");
-    assert!(told.contains("`slew_rate`"), "{told}");
+    let motor = MOTOR.replace("[inverter]\n", "inertia = \"3 kg cm2\"\n[inverter]\n");
+    let text = format!(
+        "{motor}{TIMER}adc_range = \"40 A\"\n[controller]\nkind = \"pdcc\"\nspeed_loop = \"on\"\n\
+         slew_rate = \"400 A/s\"\n"
+    );
+    let both = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+    let told = both.expect_err("both").to_string();
+    assert!(
+        told.contains("`slew_rate`: 400 A/s has no effect"),
+        "{told}"
+    );
 }
