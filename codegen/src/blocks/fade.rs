@@ -75,12 +75,12 @@ impl BusFade {
         named! {
             let j_braking = braking;
             let j_motoring = motoring;
-            let j_most = direction.is(-1).choose(j_braking, j_motoring);
-            let j_least = -direction.is(1).choose(j_braking, j_motoring);
+            let fade_most = direction.is(-1).choose(j_braking, j_motoring);
+            let fade_least = -direction.is(1).choose(j_braking, j_motoring);
         }
         Allowed {
-            least: j_least,
-            most: j_most,
+            least: fade_least,
+            most: fade_most,
         }
     }
 
