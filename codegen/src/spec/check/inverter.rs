@@ -217,12 +217,12 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
         under,
         over,
         braking: fade(
-            &braking,
+            braking.as_ref(),
             [nominal.si, reached(over, high, f64::min)],
             errors,
         ),
         motoring: fade(
-            &motoring,
+            motoring.as_ref(),
             [nominal.si, reached(under, low, f64::max)],
             errors,
         ),
@@ -240,13 +240,13 @@ fn reached(trip: f64, limit: f64, first: fn(f64, f64) -> f64) -> f64 {
 }
 
 /// A fade of the torque from the nominal voltage at most towards a level; none without a width.
-fn fade(width: &Option<Given>, [nominal, level]: [f64; 2], errors: &mut Collector) -> Option<Fade> {
-    let width = width.as_ref().filter(|width| width.si > 0.0)?;
+fn fade(width: Option<&Given>, [nominal, level]: [f64; 2], errors: &mut Collector) -> Option<Fade> {
+    let width = width.filter(|width| width.si > 0.0)?;
     let most = (level - nominal).abs();
     if width.si > most * (1.0 + 1e-9) {
         errors.push(catalogue::out_of_limits(
             &width.part.location,
-            &width.part.field,
+            width.part.field,
             &width.part.given,
             "0 V",
             &format!(
