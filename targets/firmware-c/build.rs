@@ -136,7 +136,7 @@ fn word_choice() -> &'static str {
 }
 
 /// Bytes of a supervisor, of a sample, and of the number of a trip.
-const SUPERVISOR: usize = 44;
+const SUPERVISOR: usize = 48;
 const SAMPLE: usize = 16;
 const TRIP_NUMBER: usize = 4;
 

@@ -459,13 +459,11 @@ fn followed(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> Result<i3
         return Ok(checked.hall().0);
     }
     let (checked, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
-    match supervisor.status().fault {
-        Some(fault) => Err(fault),
-        None => {
-            assert_eq!(rest, Rest::Control);
-            Ok(checked.hall().0)
-        }
+    if let Some(fault) = supervisor.status().fault {
+        return Err(fault);
     }
+    assert_eq!(rest, Rest::Control);
+    Ok(checked.hall().0)
 }
 
 #[test]
