@@ -37,7 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .try_compile("hexagen_c")?;
     fs::write(
         out.join("drives.rs"),
-        format!("drives! {{\n{}}}\n", drives?),
+        format!(
+            "const _: () = assert!(size_of::<StatusInC>() == {STATUS});\ndrives! {{\n{}}}\n",
+            drives?
+        ),
     )?;
     Ok(())
 }
@@ -69,9 +72,10 @@ fn compile(drive: &list::InC, out: &Path) -> Result<String, Box<dyn Error>> {
     };
     write(".h", &sources.header)?;
     let source = write(".c", &sources.source)?;
-    // Rust reserves exactly the size that C needs.
+    // Rust reserves exactly the size that C needs, and takes a status in the way that its size asks for.
     let check = format!(
-        "#include \"{prefix}.h\"\nextern char {prefix}_has_room[(sizeof({prefix}) == {size}) ? 1 : -1];\n"
+        "#include \"{prefix}.h\"\nextern char {prefix}_has_room[(sizeof({prefix}) == {size}) ? 1 : -1];\n\
+         extern char {prefix}_has_status[(sizeof(hexagen_status) == {STATUS}) ? 1 : -1];\n"
     );
     let check = write("_size.c", &check)?;
     build(out)
@@ -135,10 +139,11 @@ fn word_choice() -> &'static str {
     }
 }
 
-/// Bytes of a supervisor, of a sample, and of the number of a trip.
+/// Bytes of a supervisor, of a sample, of the number of a trip, and of a status.
 const SUPERVISOR: usize = 48;
 const SAMPLE: usize = 16;
 const TRIP_NUMBER: usize = 4;
+const STATUS: usize = 6;
 
 /// Bytes of a drive: set-point words, status, supervisor and state, and the record of a trip, which
 /// has a sample, a supervisor, a state and the set-point words.

@@ -6,6 +6,7 @@ pub(crate) struct StatusInC {
     mode: u8,
     pub(crate) fault: u8,
     bus_is_stale: bool,
+    hall_glitches: u16,
 }
 
 /// Types around the functions of drives in C, and their list.
