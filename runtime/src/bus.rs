@@ -15,7 +15,8 @@ pub trait Bus: Debug + Send + Sync + 'static {
     /// Replaces them together, by those of a voltage with this fault; false, without effect, if the
     /// call interrupts another one.
     fn tell(&self, words: Self::Words, fault: Option<Fault>) -> bool;
-    /// Ages the voltage by a control period; the fault of the call since the last one.
+    /// Ages the voltage by a control period. Returns the fault of the voltage that was told since the
+    /// last period, if it has one.
     fn pass_period(&self) -> Option<Fault>;
     /// Whether the last call that took effect is too old.
     fn is_stale(&self) -> bool;

@@ -28,8 +28,8 @@ impl BusWatch {
         self.0.told(fault.map_or(SOUND, |fault| fault as i32));
     }
 
-    /// A control period has passed; the voltage is stale after `periods` of them without a call. The
-    /// fault of a call since the last period.
+    /// A control period has passed; the voltage is stale after `periods` of them without a call.
+    /// Returns the fault of the voltage that was told since the last period, if it has one.
     #[inline]
     pub(crate) fn pass_period(&self, periods: Word) -> Option<Fault> {
         Fault::from_number(self.0.pass_period(periods.0))

@@ -70,7 +70,7 @@ impl<'d> Bench<'d> {
         self.closed.controller().set_bus(counts);
     }
 
-    /// Mean torque over the rated one, behind a while to settle.
+    /// Mean torque in units of the rated torque, once the currents have settled.
     fn torque(&mut self, current: f64) -> f64 {
         self.closed.controller().set_current(current);
         self.closed.run(12 * self.sector, &mut ());

@@ -318,15 +318,18 @@ fn disturbed_hall_codes_are_bridged_for_less_than_a_sector() {
     );
 }
 
+/// A drive that measures its bus at 20 mV a count, with further lines of the inverter.
+fn of_measured_bus(lines: &str) -> Result<(Spec, Origins), String> {
+    let inverter = format!(
+        "{TIMER}adc_range = \"40 A\"\nv_bus = \"measured\"\nbus_adc_bits = 12\n\
+         bus_adc_range = \"81.92 V\"\n{lines}"
+    );
+    try_check(&inverter, "kind = \"pdcc\"")
+}
+
 #[test]
 fn a_measured_bus_trips_at_its_limits_or_where_told() {
-    let counts = |lines: &str| {
-        let inverter = format!(
-            "{TIMER}adc_range = \"40 A\"\nv_bus = \"measured\"\nbus_adc_bits = 12\n\
-             bus_adc_range = \"81.92 V\"\n{lines}"
-        );
-        try_check(&inverter, "kind = \"pdcc\"").map(|(spec, _)| spec.inverter.bus_counts())
-    };
+    let counts = |lines: &str| of_measured_bus(lines).map(|(spec, _)| spec.inverter.bus_counts());
     // 20 mV a count; 70 % and 130 % of 48 V.
     assert_eq!(counts(""), Ok([1680, 3120]));
     assert_eq!(
@@ -370,12 +373,7 @@ fn a_measured_bus_trips_at_its_limits_or_where_told() {
 #[test]
 fn fades_end_a_quarter_of_their_width_before_the_voltage_that_trips() {
     let fades = |lines: &str| {
-        let inverter = format!(
-            "{TIMER}adc_range = \"40 A\"\nv_bus = \"measured\"\nbus_adc_bits = 12\n\
-             bus_adc_range = \"81.92 V\"\n{lines}"
-        );
-        let checked = try_check(&inverter, "kind = \"pdcc\"");
-        checked.map(|(spec, _)| match spec.inverter.bus {
+        of_measured_bus(lines).map(|(spec, _)| match spec.inverter.bus {
             BusSource::Measured {
                 braking, motoring, ..
             } => [braking, motoring].map(|fade| fade.map(|fade| [fade.full, fade.none])),

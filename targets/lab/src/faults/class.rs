@@ -82,7 +82,7 @@ const DISPLACED: f64 = 15.0;
 /// Placement error of a sound drive's Hall sensors, electrical degrees.
 const PLACED: f64 = 5.0;
 
-/// Dead time of a sound drive beyond the stated one, second.
+/// Dead time beyond what the specification of a sound drive states, second.
 const UNSTATED: f64 = 1e-6;
 
 /// Control periods that pass without the interrupt before it comes again.
