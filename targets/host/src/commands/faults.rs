@@ -1,9 +1,10 @@
 //! `hexagen faults`: what a drive notices of what may break.
 
+use super::ran::Ran;
 use crate::cli::{Bar, Failure, RunArguments, print_json, print_table, print_text};
 use clap::Args;
 use hexagen_lab::closed_loop::Cause;
-use hexagen_lab::engine::{EngineKind, Model, Prepared};
+use hexagen_lab::engine::Prepared;
 use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, Totals, study};
 use hexagen_lab::report::{Cell, Column, Label, Table, Tone};
 use hexagen_lab::text::significant;
@@ -20,14 +21,9 @@ pub struct Options {
 /// A study with its drive.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    /// Motor.
-    pub motor: String,
-    /// Controller variant.
-    pub controller: String,
-    /// Model that ran.
-    pub model: Model,
-    /// Engine of the fixed-point program; none for the references.
-    pub engine: Option<EngineKind>,
+    /// Motor, controller and model.
+    #[serde(flatten)]
+    pub ran: Ran,
     /// The study.
     #[serde(flatten)]
     pub study: FaultStudy,
@@ -66,12 +62,8 @@ pub fn collect(options: &Options) -> Result<(Prepared, FaultStudy), Failure> {
 /// As [`collect`].
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, study) = collect(options)?;
-    let model = options.run.model();
     let outcome = Outcome {
-        motor: drive.motor.clone(),
-        controller: drive.variant.clone(),
-        model,
-        engine: (model == Model::Fixed).then(|| drive.engine_kind()),
+        ran: Ran::of(&drive, options.run.model()),
         study,
     };
     if options.run.json {
@@ -86,10 +78,8 @@ fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
     let speeds = distinct(study.points.iter().map(|point| point.rpm));
     let torques = distinct(study.points.iter().map(|point| point.torque_nm.abs()));
     print_text(&format!(
-        "{}, {} ({:?}): one thing breaks at a time, at {} rpm with {} Nm, motoring and braking\n",
-        outcome.motor,
-        outcome.controller,
-        outcome.model,
+        "{}: one thing breaks at a time, at {} rpm with {} Nm, motoring and braking\n",
+        outcome.ran.name(),
         listed(&speeds, |rpm| format!("{rpm:.0}")),
         listed(&torques, |torque| significant(torque, 3)),
     ))?;
@@ -207,7 +197,7 @@ fn tone(row: &FaultRow, trip_current: f64) -> Tone {
 }
 
 /// What the counts mean for the board.
-const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes and, where told to, a stall. Against what shows in none of them the \
+const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, a stall. Against what shows in none of them the \
     board needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt and a \
     thermal limit.";
 

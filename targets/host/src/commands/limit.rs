@@ -1,9 +1,10 @@
 //! `hexagen limit`: the highest speed at which a controller holds the torque.
 
-use crate::cli::{Failure, RunArguments, print_json, print_text, spinner};
+use super::ran::Ran;
+use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_warnings};
 use clap::Args;
 use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
-use hexagen_lab::engine::{EngineKind, Model, Prepared, SelectedMotor};
+use hexagen_lab::engine::{Prepared, SelectedMotor};
 use hexagen_lab::text::significant;
 use serde::Serialize;
 
@@ -18,14 +19,9 @@ pub struct Options {
 /// A speed limit with its run. A torque is held while its mean is within 3 % of the demand.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    /// Motor.
-    pub motor: String,
-    /// Controller variant.
-    pub controller: String,
-    /// Model that ran.
-    pub model: Model,
-    /// Engine of the fixed-point program; none for the references.
-    pub engine: Option<EngineKind>,
+    /// Motor, controller and model.
+    #[serde(flatten)]
+    pub ran: Ran,
     /// Torque demand, Nm.
     pub torque_nm: f64,
     /// The limit.
@@ -42,12 +38,13 @@ pub struct Outcome {
 /// Diagnostics, or a plant option out of range.
 pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit, Option<SpeedLimit>), Failure> {
     let arguments = &options.run;
-    let drive = arguments.prepare_for_torque()?;
+    let motor = SelectedMotor::find(&arguments.motor, &arguments.plant.options())?;
+    let drive = motor.prepare_for_torque(arguments.controller.as_deref())?;
+    tell_warnings(&drive);
     let limit = scan(arguments, &drive)?;
     let inverter = &drive.spec.inverter;
     let has_window = inverter.window().is_some() || inverter.minimum_low_time > 0.0;
     let free = if has_window {
-        let motor = SelectedMotor::find(&arguments.motor, &arguments.plant.options())?;
         let free = motor.without_window()?;
         let free = free.prepare_for_torque(arguments.controller.as_deref())?;
         Some(scan(arguments, &free)?)
@@ -91,12 +88,8 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failur
 /// As [`collect`], or a drive that tripped above its limit.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, limit, without_window) = collect(options)?;
-    let model = options.run.model();
     let outcome = Outcome {
-        motor: drive.motor.clone(),
-        controller: drive.variant.clone(),
-        model,
-        engine: (model == Model::Fixed).then(|| drive.engine_kind()),
+        ran: Ran::of(&drive, options.run.model()),
         torque_nm: options.run.torque(&drive),
         limit,
         without_window,
@@ -120,10 +113,8 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
             )
         });
     print_text(&format!(
-        "{}, {} ({:?}): {} Nm {}{free}",
-        outcome.motor,
-        outcome.controller,
-        outcome.model,
+        "{}: {} Nm {}{free}",
+        outcome.ran.name(),
         significant(outcome.torque_nm, 4),
         found(&outcome.limit, outcome.torque_nm, drive)
     ))

@@ -14,6 +14,7 @@ pub mod limit;
 pub mod motors;
 pub mod new;
 pub mod prove;
+pub mod ran;
 pub mod report;
 pub mod reproduce;
 pub mod selected;

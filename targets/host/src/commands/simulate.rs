@@ -1,5 +1,6 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
+use super::ran::Ran;
 use crate::cli::{
     self, Failure, RunArguments, parse_rpm, print_json, print_text, spinner, warn, write_file,
 };
@@ -7,7 +8,7 @@ use clap::Args;
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
 };
-use hexagen_lab::engine::{EngineKind, Model, Prepared, run_of};
+use hexagen_lab::engine::{Prepared, run_of};
 use hexagen_lab::plant::PlantParams;
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
@@ -37,14 +38,9 @@ pub struct Options {
 /// A run and its figures of merit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
-    /// Motor.
-    pub motor: String,
-    /// Controller variant.
-    pub controller: String,
-    /// Model that ran.
-    pub model: Model,
-    /// Engine of the fixed-point program; none for the references.
-    pub engine: Option<EngineKind>,
+    /// Motor, controller and model.
+    #[serde(flatten)]
+    pub ran: Ran,
     /// Mechanical speed, rpm.
     pub rpm: f64,
     /// Torque demand, Nm.
@@ -182,12 +178,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         write_file(path, &csv)?;
     }
-    let model = options.run.model();
     let outcome = Outcome {
-        motor: drive.motor.clone(),
-        controller: drive.variant.clone(),
-        model,
-        engine: (model == Model::Fixed).then(|| drive.engine_kind()),
+        ran: Ran::of(&drive, options.run.model()),
         rpm: options.rpm,
         torque_nm: options.run.torque(&drive),
         tripped: measured.tripped,
@@ -218,13 +210,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 
 fn print_table(outcome: &Outcome) -> Result<(), Failure> {
     let engine = outcome
+        .ran
         .engine
         .map_or(String::new(), |engine| format!(", {}", engine.name()));
     print_text(&format!(
         "{}, {} ({:?}{engine}): {} Nm at {} rpm",
-        outcome.motor,
-        outcome.controller,
-        outcome.model,
+        outcome.ran.motor,
+        outcome.ran.controller,
+        outcome.ran.model,
         significant(outcome.torque_nm, 4),
         outcome.rpm
     ))?;
