@@ -1,8 +1,9 @@
 //! Fade of the set-point with the bus voltage (semantics of predictive deadbeat, "Fades").
 
 use super::Lowering;
+use super::set_point::SetPointWords;
 use crate::diagnostics::{engineering, significant};
-use crate::ir::{Expr, Interval, Param, named};
+use crate::ir::{Expr, Interval, named};
 use crate::spec::{BusSource, Fade};
 
 /// The set-point's limits with a measured bus: braking torque ends towards the greatest voltage,
@@ -32,8 +33,8 @@ impl<'b> Allowed<'b> {
 }
 
 impl BusFade {
-    /// None without a fade; `gain` in V/A.
-    pub fn new<'b>(l: &Lowering<'b>, j: Param<'b>, gain: f64) -> Option<Self> {
+    /// None without a fade.
+    pub fn new(l: &Lowering<'_>, set_point: &SetPointWords<'_>) -> Option<Self> {
         let BusSource::Measured {
             braking, motoring, ..
         } = l.spec.inverter.bus
@@ -43,8 +44,8 @@ impl BusFade {
         (braking.is_some() || motoring.is_some()).then(|| Self {
             braking,
             motoring,
-            gain,
-            range: j.interval(),
+            gain: set_point.gain.value,
+            range: set_point.j.interval(),
         })
     }
 

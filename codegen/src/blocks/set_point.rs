@@ -20,6 +20,8 @@ pub struct SetPointWords<'b> {
     bus: Option<BusWords<'b>>,
     /// The set-point's gain.
     pub gain: Gain,
+    /// The greatest set-point word that a setter makes: `k_set` times `I_MAX_BITS`.
+    pub top: i64,
     /// Words of the speed loop; with a speed loop only.
     pub speed: Option<SpeedWords<'b>>,
 }
@@ -132,12 +134,13 @@ impl<'b> SetPointWords<'b> {
             let doc = "Speed set-point, electrical angle per tick, 2^32 a turn.";
             let range = Interval::symmetric(most);
             let reference = l.b.param(Demand::Speed, "speed_ref", 0, range, doc);
-            SpeedWords { reference, top }
+            SpeedWords { reference }
         });
         Self {
             j,
             bus,
             gain,
+            top,
             speed,
         }
     }

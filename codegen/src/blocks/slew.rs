@@ -1,9 +1,10 @@
 //! Slew rate of the current set-point (semantics of predictive deadbeat, "Slew rate").
 
-use super::{Lowering, product_bound, round_down};
+use super::Lowering;
+use super::set_point::SetPointWords;
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
-use crate::ir::{Exact, Expr, Interval, Memory, Named, Param, Real, named};
+use crate::ir::{Exact, Expr, Interval, Memory, Named, Real, named};
 
 /// Bits of the set-point in force: with a rate of the rated current in a minute a period's step still
 /// has several.
@@ -24,11 +25,9 @@ pub struct SlewLimit<'b> {
 }
 
 impl<'b> SlewLimit<'b> {
-    /// Declares the word, of the set-point word `j`; `rate` in A/s, `gain` in V/A.
-    pub fn new(l: &Lowering<'b>, rate: f64, j: Param<'b>, gain: f64) -> Self {
-        let bits = round_down(l.spec.inverter.max_current * 65536.0) as i64;
-        let top = product_bound(gain * l.scale.voltage() / 65536.0, 32, bits);
-        let range = j.interval();
+    /// Declares the word; `rate` in A/s.
+    pub fn new(l: &Lowering<'b>, rate: f64, set_point: &SetPointWords<'b>) -> Self {
+        let range = set_point.j.interval();
         let extra = BITS.saturating_sub(range.bits()).min(12);
         let frac_bits = (l.scale.voltage_bits + extra) as i32;
         let meaning = "set-point in force, base one timer count of voltage";
@@ -39,8 +38,8 @@ impl<'b> SlewLimit<'b> {
             rate,
             in_force: l.b.memory("j_in_force", 0, range, doc),
             extra,
-            top,
-            gain,
+            top: set_point.top,
+            gain: set_point.gain.value,
         }
     }
 

@@ -1,5 +1,6 @@
 //! The PI speed regulator (semantics of predictive deadbeat, "Speed loop").
 
+use super::set_point::SetPointWords;
 use super::{Allowed, Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
@@ -23,8 +24,6 @@ pub(super) fn speed_word(spec: &Spec) -> f64 {
 pub struct SpeedWords<'b> {
     /// Speed set-point, in words of `omega`.
     pub reference: Param<'b>,
-    /// The greatest set-point word: `k_set` times `I_MAX_BITS`.
-    pub top: i64,
 }
 
 /// The regulator: options and integral.
@@ -35,6 +34,8 @@ pub struct SpeedRegulator<'b> {
     /// Fraction bits of the integral beyond those of voltages.
     extra: u32,
     words: SpeedWords<'b>,
+    /// The greatest set-point word.
+    top: i64,
     /// The set-point's gain, V/A.
     stiffness: f64,
 }
@@ -56,15 +57,16 @@ impl<'b> SpeedRegulator<'b> {
         l: &Lowering<'b>,
         options: SpeedLoop,
         words: SpeedWords<'b>,
-        stiffness: f64,
+        set_point: &SetPointWords<'b>,
     ) -> Self {
-        let bits = Interval::symmetric(words.top).bits();
+        let top = set_point.top;
+        let bits = Interval::symmetric(top).bits();
         let extra = INTEGRAL_BITS.saturating_sub(bits).min(12);
         let frac_bits = (l.scale.voltage_bits + extra) as i32;
         let meaning = "integral of the speed regulator, base one timer count of voltage";
         let rounding = Rounding::RoundHalfUp;
         l.format("speed_integral", 32, frac_bits, rounding, meaning);
-        let range = Interval::symmetric(words.top << extra);
+        let range = Interval::symmetric(top << extra);
         let doc =
             "Integral of the speed regulator, words of voltage with additional fraction bits.";
         Self {
@@ -72,7 +74,8 @@ impl<'b> SpeedRegulator<'b> {
             integral: l.b.memory("speed_integral", 0, range, doc),
             extra,
             words,
-            stiffness,
+            top,
+            stiffness: set_point.gain.value,
         }
     }
 
@@ -125,7 +128,7 @@ impl<'b> SpeedRegulator<'b> {
             * l.scale.voltage()
             * f64::from(self.extra).exp2();
         let doc = "Limit of the integral: the largest current by itself.";
-        let (name, top) = ("speed_integral_max", self.words.top << self.extra);
+        let (name, top) = ("speed_integral_max", self.top << self.extra);
         l.rounded_number(name, top, Exact::Number(Real::of(exact)), doc)
     }
 

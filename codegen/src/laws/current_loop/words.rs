@@ -101,7 +101,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (l, options, needs) = (self.l, self.options, self.needs);
         let (estimated, observes) = (self.uses(EmfSource::Estimated), self.observes());
         let needs_rotor = self.needs_rotor();
-        let fade = BusFade::new(l, set_point.j, set_point.gain.value);
+        let fade = BusFade::new(l, set_point);
         let needs_direction = needs.commutation || fade.is_some();
         // The EMF of the last period is computed.
         let sees = estimated || observes;
@@ -119,12 +119,12 @@ impl<'b> CurrentLoop<'_, 'b> {
             rotor: needs_rotor.then(|| RotorWords::new(l)),
             direction: (needs_direction && !needs_rotor).then(|| direction_word(l)),
             speed: options.speed.zip(set_point.speed).map(|(options, words)| {
-                SpeedRegulator::new(l, options, words, set_point.gain.value)
+                SpeedRegulator::new(l, options, words, set_point)
             }),
             fade,
             slew: options
                 .slew_rate
-                .map(|rate| SlewLimit::new(l, rate, set_point.j, set_point.gain.value)),
+                .map(|rate| SlewLimit::new(l, rate, set_point)),
             pair: needs.commutation.then(|| self.commutation_rule()),
             i_prev: sees.then(|| {
                 let range = Interval::symmetric(l.current_span());
