@@ -479,7 +479,7 @@ typedef struct {
  *
  * So the board must have (a) a comparator of the current on the timer's break input, (b) a watchdog
  * on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of the bus
- * voltage, too: all legs off end no voltage above the bus that the diodes pass on.
+ * voltage, too: with all legs off the diodes still pass an EMF above the bus on to it.
  *
  * A Hall code is disturbed if no sensors give it, and with `hall_glitches` also if it is not that of
  * the last sector or of one beside it. So many samples in a row with such a code are bridged: the
@@ -604,19 +604,19 @@ static inline bool hexagen_is_sound(
         && (limits->hall_glitches == 0U || supervisor->hall_prev == 0U || is_beside);
 }
 
-/** Follows the Hall code of a sample; whether it is not disturbed. */
-static inline bool hexagen_watch_hall(
-    hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+/**
+ * Follows the Hall code of a sample, which is disturbed or not; whether it is another one than the
+ * last, which without stall detection and bridging is not known.
+ */
+static inline bool hexagen_watch_hall(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    uint16_t hall, bool is_sound)
 {
-    const bool is_sound = hexagen_is_sound(supervisor, limits, hall);
-    if (limits->hall_glitches != 0U && is_sound) {
+    const uint16_t before = supervisor->hall_prev;
+    if (is_sound && (limits->stall_periods != 0 || limits->hall_glitches != 0U)) {
+        supervisor->hall_prev = hall;
         supervisor->hall_gap = 0;
-        /* Where stalls are detected, the code is kept with its edge. */
-        if (limits->stall_periods == 0) {
-            supervisor->hall_prev = hall;
-        }
     }
-    return is_sound;
+    return is_sound && hall != before && before != 0U;
 }
 
 /** Whether the stall time-out has passed. */
@@ -628,14 +628,9 @@ static inline bool hexagen_is_stalled(
 
 /** Counts periods without a Hall edge under demand; true on a stall. */
 static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    uint16_t sampled, const volatile int32_t *set_point)
+    bool is_edge, const volatile int32_t *set_point)
 {
     if (limits->stall_periods != 0) {
-        const uint16_t before = supervisor->hall_prev;
-        const uint16_t hall =
-            hexagen_is_sound(supervisor, limits, sampled) ? sampled : before;
-        const bool is_edge = hall != before && before != 0U;
-        supervisor->hall_prev = hall;
         if (is_edge || *set_point == 0 || supervisor->mode != HEXAGEN_MODE_RUN) {
             supervisor->stall_count = 0;
         } else if (supervisor->stall_count < limits->stall_periods) {
@@ -656,8 +651,9 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
     const hexagen_sample *sample, const volatile int32_t *set_point, hexagen_checked *checked)
 {
     const uint16_t hall = hexagen_hall_of(limits, sample);
-    const bool is_sound = hexagen_watch_hall(supervisor, limits, hall);
-    const bool is_stalled = hexagen_watch_stall(supervisor, limits, hall, set_point);
+    const bool is_sound = hexagen_is_sound(supervisor, limits, hall);
+    const bool is_edge = hexagen_watch_hall(supervisor, limits, hall, is_sound);
+    const bool is_stalled = hexagen_watch_stall(supervisor, limits, is_edge, set_point);
     const uint16_t count_first = hexagen_count(limits, sample, 0);
     const uint16_t count_second = hexagen_count(limits, sample, 1);
     const int32_t first = hexagen_current(limits, 0, count_first, supervisor->offset_a);
@@ -794,8 +790,9 @@ static inline int32_t hexagen_judge_bus(const hexagen_limits *limits, uint16_t c
 }
 
 /**
- * Replaces both words together, by those of a voltage of which hexagen_judge_bus said this. A call that interrupts another one has no effect; one that never
- * resumes after an interruption blocks later calls for HEXAGEN_GIVEN_UP control periods.
+ * Replaces both words together, by those of a voltage of which hexagen_judge_bus said this. A call
+ * that interrupts another one has no effect; one that never resumes after an interruption blocks
+ * later calls for HEXAGEN_GIVEN_UP control periods.
  */
 void hexagen_tell_bus(hexagen_bus *bus, int32_t first, int32_t second, int32_t judged);
 
@@ -807,8 +804,8 @@ static inline const volatile int32_t *hexagen_bus_words(const hexagen_bus *bus)
 
 /**
  * Called at each control period: ages the voltage, and a call in progress. The voltage is stale
- * after `periods` of them without a call that takes effect. The fault of such a call since the last
- * period.
+ * after `periods` of them without a call that takes effect. Returns the fault of the voltage that was
+ * told since the last period, if it has one.
  */
 static inline hexagen_fault hexagen_pass_period(hexagen_bus *bus, int32_t periods)
 {

@@ -312,7 +312,7 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// So the board must have (a) a comparator of the current on the timer's break input, (b) a
 /// watchdog on the control interrupt and (c) a thermal limit; where the motor can brake, a limit of
-/// the bus voltage, too: all legs off end no voltage above the bus that the diodes pass on.
+/// the bus voltage, too: with all legs off the diodes still pass an EMF above the bus on to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Supervisor {
     mode: Mode,
@@ -455,8 +455,9 @@ impl Supervisor {
         let counts = [first.into(), second.into()];
         let i = limits.sensed(sensors, counts, self.offsets);
         let hall = limits.hall_of(sample);
-        let is_sound = self.watch_hall(limits, hall);
-        let stalled = self.watch_stall(limits, hall, is_demanded);
+        let is_sound = self.is_sound(limits, hall);
+        let is_edge = self.watch_hall(limits, hall, is_sound);
+        let stalled = self.watch_stall(limits, is_edge, is_demanded);
         let is_fit = self.mode == Mode::Run
             && !limits.is_at_end(first)
             && !limits.is_at_end(second)
@@ -479,18 +480,16 @@ impl Supervisor {
         is_hall_code(hall) && (limits.hall_glitches == 0 || self.hall_prev == 0 || is_beside)
     }
 
-    /// Follows the Hall code of a sample; whether it is not disturbed.
+    /// Follows the Hall code of a sample, which is disturbed or not; whether it is another one than the
+    /// last, which without stall detection and bridging is not known.
     #[inline]
-    fn watch_hall(&mut self, limits: &Limits, hall: u8) -> bool {
-        let is_sound = self.is_sound(limits, hall);
-        if limits.hall_glitches != 0 && is_sound {
+    fn watch_hall(&mut self, limits: &Limits, hall: u8, is_sound: bool) -> bool {
+        let is_edge = is_sound && hall != self.hall_prev && self.hall_prev != 0;
+        if is_sound && (limits.stall_periods != 0 || limits.hall_glitches != 0) {
+            self.hall_prev = hall;
             self.hall_gap = 0;
-            // Where stalls are detected, the code is kept with its edge.
-            if limits.stall_periods == 0 {
-                self.hall_prev = hall;
-            }
         }
-        is_sound
+        is_edge
     }
 
     /// Counts periods without a Hall edge under demand; true on a stall.
@@ -498,19 +497,12 @@ impl Supervisor {
     fn watch_stall(
         &mut self,
         limits: &Limits,
-        hall: u8,
+        is_edge: bool,
         is_demanded: impl FnOnce() -> bool,
     ) -> bool {
         if limits.stall_periods == 0 {
             return false;
         }
-        let hall = if self.is_sound(limits, hall) {
-            hall
-        } else {
-            self.hall_prev
-        };
-        let is_edge = hall != self.hall_prev && self.hall_prev != 0;
-        self.hall_prev = hall;
         self.stall_count = if is_edge || !is_demanded() || self.mode != Mode::Run {
             Word(0)
         } else {

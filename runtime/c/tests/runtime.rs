@@ -160,7 +160,11 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "supervisor->hall_prev == 0U || is_beside",
             "supervisor->hall_prev == 0U || is_beside || true",
         ),
-        ("line", "supervisor->hall_gap = 0;\n        /*", "/*"),
+        (
+            "line",
+            "supervisor->hall_gap = 0;\n    }\n    return is_sound",
+            "}\n    return is_sound",
+        ),
         ("line", "hall_gap >= limits", "hall_gap > limits"),
         (
             "line",
