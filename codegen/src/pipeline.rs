@@ -477,6 +477,7 @@ kind = "pdcc"
             assert_eq!(told(&sine, variant), [""; 0], "a sine with {variant}");
         }
         for variant in [
+            "pdcc",
             "pdcc:emf=model",
             "pdcc:emf=held",
             "pi-pwm:feed_forward=off",
@@ -487,13 +488,13 @@ kind = "pdcc"
         for (motor, variant, told_of) in [
             (
                 &slow,
-                "pdcc",
-                "warning[HX0602]: `emf`: estimated (default), but the EMF turns 12 electrical degrees per control period at rated speed; above 9 the torque may be more than 5 % off; choose `emf=model` with `reference=proportional` and `hall_capture=timer`, or a control period of at most 187.5 us",
+                "fcs-mpc",
+                "warning[HX0602]: `emf`: estimated (default), but the EMF turns 12 electrical degrees per control period at rated speed; above 9 the torque may be more than 5 % off; choose `emf=observer` with `reference=proportional` and `hall_capture=timer`, or a control period of at most 187.5 us",
             ),
             (
                 &sine,
                 "pdcc:emf_filter=0.01",
-                "above 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf=model`",
+                "above 1.146 the estimate cannot follow; choose a greater `emf_filter`, `emf=observer`",
             ),
         ] {
             let told = told(motor, variant);
@@ -546,8 +547,8 @@ kind = "pdcc"
 
     #[test]
     fn a_target_chooses_words_that_suffice_and_says_what_they_cost() {
-        let narrow = of("pdcc:target=cortex_m0");
-        let given = of("pdcc:word=16");
+        let narrow = of("pdcc:reference=quasi_square,target=cortex_m0");
+        let given = of("pdcc:reference=quasi_square,word=16");
         assert_eq!(narrow.graph, given.graph);
         assert_eq!(narrow.interface.spec_toml, given.interface.spec_toml);
         let doc = narrow.interface.doc.join("\n");

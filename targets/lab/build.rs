@@ -21,7 +21,7 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 /// The variants of the result table, each with both ways of reading Hall edges. The program looks
 /// drives up by their normalised specification, so a variant that is missing here is interpreted.
 const VARIANTS: [&str; 12] = [
-    "pdcc:modulation=three_phase,saturation=nearest,emf=model",
+    "pdcc:reference=quasi_square,modulation=three_phase,saturation=nearest,emf=model",
     "pdcc:modulation=pair,saturation=keep_angle,emf=model",
     "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=model",
     "pdcc:modulation=three_phase,saturation=torque_priority,advance=2,emf=estimated",
@@ -30,8 +30,8 @@ const VARIANTS: [&str; 12] = [
     "fcs-mpc:candidates=table2,off_leg=nominal,emf=estimated,emf_filter=1",
     "fcs-mpc:candidates=table2,off_leg=physical,emf=model",
     "phcc:table=derived,off_leg=physical,emf=model",
-    "pi-pwm:feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest",
-    "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest",
+    "pi-pwm:reference=quasi_square,feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest",
+    "pi-pwm:reference=quasi_square,feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest",
     "pi-pwm:six_step=on,bandwidth=600Hz",
 ];
 

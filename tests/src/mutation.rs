@@ -9,7 +9,11 @@ pub const MUTATED: &[Drive] = &[
     Drive {
         kind: "pdcc",
         motor: "trivedi-keshri-660w",
-        settings: &[("saturation", "torque_priority"), ("hall_capture", "timer")],
+        settings: &[
+            ("reference", "quasi_square"),
+            ("saturation", "torque_priority"),
+            ("hall_capture", "timer"),
+        ],
     },
     Drive {
         kind: "pdcc",
@@ -46,7 +50,11 @@ pub const MUTATED: &[Drive] = &[
     Drive {
         kind: "pi-pwm",
         motor: "velineon-3500",
-        settings: &[("saturation", "nearest"), ("word", "16")],
+        settings: &[
+            ("reference", "quasi_square"),
+            ("saturation", "nearest"),
+            ("word", "16"),
+        ],
     },
 ];
 

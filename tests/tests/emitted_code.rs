@@ -14,11 +14,11 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 const VARIANTS: [&str; 7] = [
     "pdcc:modulation=pair,advance=1",
     "pdcc:emf=model,reference=proportional,saturation=nearest",
-    "pdcc:saturation=keep_angle,delay=0",
+    "pdcc:reference=quasi_square,saturation=keep_angle,delay=0",
     "fcs-mpc:candidates=all,emf=model",
     "fcs-mpc:off_leg=nominal,delay=0,word=16",
-    "pi-pwm:feed_forward=off,saturation=keep_angle",
-    "pdcc:speed_loop=on",
+    "pi-pwm:reference=quasi_square,feed_forward=off,saturation=keep_angle",
+    "pdcc:reference=quasi_square,speed_loop=on",
 ];
 
 /// Every motor in every variant that its specification allows: name, tokens; variant by variant.

@@ -10,7 +10,7 @@ use hexagen_tests::library::{PAPER_MOTOR, motor, with_inertia};
 /// Drives that together have every block of a step.
 const VARIANTS: [&str; 11] = [
     "pdcc",
-    "pdcc:emf=observer,saturation=nearest",
+    "pdcc:reference=quasi_square,emf=observer,saturation=nearest",
     "pdcc:modulation=pair,saturation=keep_angle,word=16",
     "pdcc:reference=proportional,emf=model",
     "pi-pwm",
@@ -19,7 +19,7 @@ const VARIANTS: [&str; 11] = [
     "fcs-mpc:candidates=all,modulated=on",
     "phcc",
     "phcc:candidates=three_phase,emf=held",
-    "pdcc:speed_loop=on",
+    "pdcc:reference=quasi_square,speed_loop=on",
 ];
 
 /// Steps per drive.

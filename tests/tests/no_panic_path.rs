@@ -13,8 +13,8 @@ use std::process::Command;
 
 /// Drives that together call every function of the runtime.
 const CONTROLLERS: [&str; 7] = [
-    "pdcc:saturation=torque_priority",
-    "pdcc:word=16,saturation=keep_angle",
+    "pdcc:reference=quasi_square,saturation=torque_priority",
+    "pdcc:reference=quasi_square,word=16,saturation=keep_angle",
     "pdcc:modulation=pair,emf=model,saturation=nearest",
     "fcs-mpc:candidates=all",
     "phcc",
@@ -23,7 +23,7 @@ const CONTROLLERS: [&str; 7] = [
 ];
 
 /// One with a setter more.
-const REGULATED: &str = "pdcc:speed_loop=on";
+const REGULATED: &str = "pdcc:reference=quasi_square,speed_loop=on";
 
 /// A measured bus: all setters, and the double buffer.
 const BUS: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"100 V\"\n";

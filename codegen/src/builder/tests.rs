@@ -131,7 +131,7 @@ fn an_estimate_that_turns_too_far_is_told_unless_it_is_allowed() {
     let slow = include_str!("../example.toml").replace("\"20 kHz\"", "\"4 kHz\"");
     fs::write(folder.join("hub.toml"), slow).expect("a motor file");
     let builder = Builder::new().root(&folder).out_dir(&folder);
-    let builder = builder.motor("hub.toml").controller("pdcc");
+    let builder = builder.motor("hub.toml").controller("pdcc:emf=estimated");
     let told = builder.clone().generate();
     let allowed = builder.allow("HX0602").generate();
     fs::remove_dir_all(&folder).expect("the folder is ours");

@@ -448,9 +448,9 @@ impl Code {
             ),
             Self::EstimateTurnsTooFar => say(
                 "The EMF of the last period stands for that of the next but one; at this speed it has turned too far by then.",
-                "f_pwm = \"4 kHz\"",
-                "f_pwm = \"20 kHz\"",
-                "Use `emf = \"model\"`, or a shorter period.",
+                "f_pwm = \"4 kHz\"\nkind = \"pdcc\"\nemf = \"estimated\"",
+                "f_pwm = \"4 kHz\"\nkind = \"pdcc\"\nemf = \"observer\"",
+                "Leave `emf` out, or use a shorter period.",
             ),
             Self::MeanForPeak => say(
                 "EMF and torque constant are one number in SI units. Of a sinusoidal motor only the means over block commutation are, as Maxon and others print them; the peak is pi/3 times that, 4.7 % more.",

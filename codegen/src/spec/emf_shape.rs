@@ -4,7 +4,7 @@
 //! third of a turn; shapes have half-wave symmetry and amplitude 1.
 
 use super::EmfShape;
-use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
 
 impl EmfShape {
     /// Unit EMF of phase a at the electrical angle `theta_e` (radian), from -1 to 1.
@@ -56,6 +56,24 @@ impl EmfShape {
                     ((ramp * ramp - 900.0) / (2.0 * ramp) + 90.0 - ramp) / 30.0
                 }
             }
+        }
+    }
+
+    /// Mean torque per ampere of the rated current's peak over the phase constant: that of a sinusoidal
+    /// current with a sinusoidal EMF, else of a quasi-square one.
+    pub fn rated_factor(self) -> f64 {
+        match self {
+            Self::Sinusoidal => self.sine_factor(),
+            Self::Trapezoidal { .. } => self.quasi_square_factor(),
+        }
+    }
+
+    /// Peak of the rated current over its root mean square: of a sine with a sinusoidal EMF, else of a
+    /// quasi-square wave, which is 0 in a third of the turn.
+    pub fn rated_peak(self) -> f64 {
+        match self {
+            Self::Sinusoidal => SQRT_2,
+            Self::Trapezoidal { .. } => 1.5_f64.sqrt(),
         }
     }
 

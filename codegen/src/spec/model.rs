@@ -108,7 +108,7 @@ pub struct MotorSpec {
     pub emf_constant: f64,
     /// Shape of the EMF.
     pub emf_shape: EmfShape,
-    /// Rated current, peak of the quasi-square wave, ampere.
+    /// Rated current, ampere: peak of a sine with a sinusoidal EMF, else of a quasi-square wave.
     pub rated_current: f64,
     /// Rated torque as given, Nm.
     pub rated_torque: Option<f64>,
@@ -125,6 +125,17 @@ pub struct MotorSpec {
 }
 
 impl MotorSpec {
+    /// Torque per ampere of the rated current, Nm/A.
+    pub fn rated_torque_constant(&self) -> f64 {
+        self.emf_constant * self.emf_shape.rated_factor()
+    }
+
+    /// Rated torque, Nm: as given, else that of the rated current.
+    pub fn torque_rating(&self) -> f64 {
+        self.rated_torque
+            .unwrap_or(self.rated_current * self.rated_torque_constant())
+    }
+
     /// Hall sensors that the drive inverts first, as bits of the code: one of sensors that stand 60
     /// degrees apart, so that their codes become those of sensors 120 degrees apart, 001 to 110.
     pub fn hall_inverted(&self) -> u8 {

@@ -21,7 +21,7 @@ pub const DRIVES: &[InC] = &[
         symbol: "step_trivedi_keshri_660w_pdcc_keep_angle_c",
         motor: "trivedi-keshri-660w",
         kind: "pdcc",
-        options: "saturation: keep_angle, emf: held",
+        options: "reference: quasi_square, saturation: keep_angle, emf: held",
     },
     InC {
         name: "TrivediFcsMpcThreePhase",
@@ -42,7 +42,7 @@ pub const DRIVES: &[InC] = &[
         symbol: "step_trivedi_keshri_660w_pi_pwm_keep_angle_c",
         motor: "trivedi-keshri-660w",
         kind: "pi_pwm",
-        options: "saturation: keep_angle, feed_forward: off",
+        options: "reference: quasi_square, saturation: keep_angle, feed_forward: off",
     },
     InC {
         name: "TeknicPdcc",

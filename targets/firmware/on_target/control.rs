@@ -15,7 +15,7 @@ hexagen::controller! {
     /// The drive of this firmware, separate from those of the test bench.
     pub HubDrive {
         motor: "../motors/trivedi-keshri-660w.toml",
-        controller: pdcc { saturation: keep_angle, emf: held },
+        controller: pdcc { reference: quasi_square, saturation: keep_angle, emf: held },
     }
 }
 

@@ -6,6 +6,8 @@ macro_rules! drives_for {
         hexagen_firmware::drives! {
             TrivediPdcc, step_trivedi_keshri_660w_pdcc:
                 "../motors/trivedi-keshri-660w.toml", pdcc { target: $target };
+            TrivediPdccQuasiSquare, step_trivedi_keshri_660w_pdcc_quasi_square:
+                "../motors/trivedi-keshri-660w.toml", pdcc { reference: quasi_square, target: $target };
             TrivediFcsMpc, step_trivedi_keshri_660w_fcs_mpc:
                 "../motors/trivedi-keshri-660w.toml", fcs_mpc {};
             TrivediPhcc, step_trivedi_keshri_660w_phcc:
@@ -22,7 +24,8 @@ macro_rules! drives_for {
 
             // The variants of the cost table's goals, each with the core's word length.
             TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
-                "../motors/trivedi-keshri-660w.toml", pdcc { saturation: keep_angle, emf: held, target: $target };
+                "../motors/trivedi-keshri-660w.toml",
+                pdcc { reference: quasi_square, saturation: keep_angle, emf: held, target: $target };
             TrivediFcsMpcThreePhase, step_trivedi_keshri_660w_fcs_mpc_three_phase:
                 "../motors/trivedi-keshri-660w.toml",
                 fcs_mpc { candidates: three_phase, emf: held, target: $target };
@@ -34,7 +37,10 @@ macro_rules! drives_for {
             TrivediPhccThreePhase, step_trivedi_keshri_660w_phcc_three_phase:
                 "../motors/trivedi-keshri-660w.toml", phcc { candidates: three_phase, emf: held, target: $target };
             TrivediPiPwmKeepAngle, step_trivedi_keshri_660w_pi_pwm_keep_angle:
-                "../motors/trivedi-keshri-660w.toml", pi_pwm { saturation: keep_angle, feed_forward: off, target: $target };
+                "../motors/trivedi-keshri-660w.toml",
+                pi_pwm {
+                    reference: quasi_square, saturation: keep_angle, feed_forward: off, target: $target
+                };
         }
     };
 }

@@ -1,13 +1,30 @@
-//! The motor library, and whether each motor's default drive holds its rating.
+//! The motor library, and how well each motor's default drive does.
 
-use crate::closed_loop::{Held, RunOptions, STARTS, Trip, mean_torque};
+use crate::closed_loop::{Measurement, RunOptions, STARTS, Trip, measure};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use crate::{LabError, Progress};
+use hexagen_codegen::spec::Spec;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The controller for the rating.
+/// The controller, with all options at their defaults.
 const CONTROLLER: &str = "pdcc";
+
+/// Speeds, percent of the rated one.
+pub const SPEEDS: [u32; 4] = [5, 25, 60, 100];
+
+/// Greatest distance of the mean torque from the demand, percent.
+pub const TORQUE: f64 = 1.0;
+
+/// Greatest ripple, percent: up to [`COARSE`] electrical degrees per control period at rated speed,
+/// and above.
+pub const RIPPLE: [f64; 2] = [3.0, 7.0];
+
+/// Electrical degrees per control period.
+pub const COARSE: f64 = 8.0;
+
+/// Share of periods at the edge of the hexagon above which the bus voltage limits a drive, percent.
+const SATURATED: f64 = 0.5;
 
 /// One motor of the library; per phase of the star, SI units, speeds in rpm.
 #[derive(Clone, Debug, Serialize)]
@@ -34,17 +51,106 @@ pub struct LibraryMotor {
     pub rated_rpm: Option<f64>,
     /// Control period, second.
     pub t_s: Option<f64>,
+    /// Turn of the rotor in a control period at rated speed, electrical degrees.
+    pub degrees_per_period: Option<f64>,
     /// Whether the controller of its file can be generated.
     pub generates: bool,
     /// Why not.
     pub reason: Option<String>,
-    /// Whether PDCC with its defaults holds rated torque at rated speed and nominal bus voltage,
-    /// within 3 % on either side.
-    pub holds_rating: Option<bool>,
-    /// Mean torque there, in percent of the rated one; `None` for a drive that trips.
-    pub rated_speed_torque_pct: Option<f64>,
-    /// Trip there.
+    /// The default drive at each of [`SPEEDS`].
+    pub points: Vec<RatedPoint>,
+    /// Whether it is right at all of them: torque within [`TORQUE`], ripple at most [`RIPPLE`].
+    pub is_right: bool,
+    /// What it is not right for.
+    pub limit: Option<Limit>,
+}
+
+/// The default drive at rated torque and one speed.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct RatedPoint {
+    /// Speed, percent of the rated one.
+    pub speed_pct: u32,
+    /// Mean torque, percent of the demand; `None` for a drive that trips.
+    pub torque_pct: Option<f64>,
+    /// Peak-to-peak ripple, percent of the mean.
+    pub ripple_pct: Option<f64>,
+    /// Share of periods at the edge of the hexagon, percent.
+    pub saturated_pct: Option<f64>,
+    /// Trip.
     pub tripped: Option<Trip>,
+}
+
+/// What limits a drive that is not right at a speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limit {
+    /// The bus voltage.
+    BusVoltage,
+    /// Control begins on a rotor that is too fast.
+    StartOnFastRotor,
+    /// The angle that passes in a control period.
+    ControlPeriod,
+}
+
+impl RatedPoint {
+    /// Runs a drive at a share of its rated speed and the torque of its demand, times `sign`, on the
+    /// plant of its motor's file. A negative share is backward.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn measure(drive: &Prepared, speed_pct: i32, sign: f64) -> Result<Self, LabError> {
+        let torque = sign * drive.demand();
+        let omega = f64::from(speed_pct) / 100.0 * drive.spec.motor.rated_speed;
+        let run = RunOptions {
+            starts: vec![STARTS[0]],
+            ..run_of(&drive.spec, omega, torque)
+        };
+        let maker = drive.maker(Model::Fixed, drive.set_point(torque));
+        let Measurement {
+            figures, tripped, ..
+        } = measure(&plant_of(&drive.spec), &run, maker)?;
+        let mean = figures.mean_torque_nm.filter(|_| tripped.is_none());
+        Ok(Self {
+            speed_pct: speed_pct.unsigned_abs(),
+            torque_pct: mean.map(|mean| 100.0 * mean / torque),
+            ripple_pct: figures.ripple_pp_pct,
+            saturated_pct: figures.saturated_pct,
+            tripped,
+        })
+    }
+
+    /// Whether torque and ripple are right; `most`: greatest ripple, percent.
+    pub fn is_right(&self, most: f64) -> bool {
+        let holds = |torque: f64| (torque - 100.0).abs() <= TORQUE;
+        self.torque_pct.is_some_and(holds) && self.ripple_pct.is_some_and(|ripple| ripple <= most)
+    }
+
+    /// What limits a drive here.
+    fn limit(&self) -> Limit {
+        if self.tripped.is_some() {
+            Limit::StartOnFastRotor
+        } else if self.saturated_pct.is_some_and(|share| share > SATURATED) {
+            Limit::BusVoltage
+        } else {
+            Limit::ControlPeriod
+        }
+    }
+}
+
+/// Turn of the rotor in a control period at rated speed, electrical degrees.
+pub fn degrees_per_period(spec: &Spec) -> f64 {
+    let omega_e = spec.motor.rated_speed * f64::from(spec.motor.pole_pairs);
+    (omega_e * spec.inverter.t_s).to_degrees()
+}
+
+/// Greatest ripple of a drive that is right, percent.
+pub fn greatest_ripple(spec: &Spec) -> f64 {
+    let [fine, coarse] = RIPPLE;
+    if degrees_per_period(spec) <= COARSE {
+        fine
+    } else {
+        coarse
+    }
 }
 
 /// The library, by name.
@@ -53,38 +159,30 @@ pub struct LibraryMotor {
 /// If a file of the library cannot be read.
 pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, LabError> {
     let motors = SelectedMotor::library(&PlantOptions::default())?;
-    // A motor without this controller cannot hold its rating.
+    // A motor without this controller has no points.
     let drives: Vec<Option<Prepared>> = motors
         .iter()
         .map(|motor| motor.prepare(Some(CONTROLLER)).ok())
         .collect();
     progress.begin("running at the rating", motors.len() as u64);
-    let ratings = drives.par_iter().map(|drive| {
-        let rating = drive.as_ref().map(at_rating).transpose();
+    let points = drives.par_iter().map(|drive| {
+        let points = drive.as_ref().map_or(Ok(Vec::new()), points);
         progress.advance(1);
-        rating
+        points
     });
-    let ratings = ratings.collect::<Result<Vec<_>, _>>();
-    let entries = motors.iter().zip(ratings?);
+    let points = points.collect::<Result<Vec<_>, _>>()?;
+    let entries = motors.iter().zip(points);
     Ok(entries
-        .map(|(motor, rating)| entry(motor, rating))
+        .map(|(motor, points)| entry(motor, points))
         .collect())
 }
 
-/// Runs a drive at rated speed and rated torque, clamped to the set-point limit, on the plant of
-/// its motor's file: the mean torque in newton metres, or the trip.
-fn at_rating(drive: &Prepared) -> Result<Result<f64, Trip>, LabError> {
-    let plant = plant_of(&drive.spec);
-    let set_point = drive.set_point(drive.demand());
-    let rated = RunOptions {
-        starts: vec![STARTS[0]],
-        ..run_of(&drive.spec, drive.spec.motor.rated_speed, drive.demand())
-    };
-    let maker = drive.maker(Model::Fixed, set_point);
-    Ok(mean_torque(&plant, &rated, &maker)?)
+fn points(drive: &Prepared) -> Result<Vec<RatedPoint>, LabError> {
+    let points = SPEEDS.map(|share| RatedPoint::measure(drive, share as i32, 1.0));
+    points.into_iter().collect()
 }
 
-fn entry(motor: &SelectedMotor, rating: Option<Result<f64, Trip>>) -> LibraryMotor {
+fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
     let none = LibraryMotor {
         name: motor.source.name.clone(),
         description: None,
@@ -97,40 +195,41 @@ fn entry(motor: &SelectedMotor, rating: Option<Result<f64, Trip>>) -> LibraryMot
         rated_torque_nm: None,
         rated_rpm: None,
         t_s: None,
+        degrees_per_period: None,
         generates: false,
         reason: None,
-        holds_rating: None,
-        rated_speed_torque_pct: None,
-        tripped: None,
+        points: Vec::new(),
+        is_right: false,
+        limit: None,
     };
-    match motor.prepare(None) {
-        Ok(drive) => {
-            let (spec, inverter) = (&drive.spec.motor, &drive.spec.inverter);
-            let torque = rating.and_then(Result::ok);
-            let rated = drive.rated_torque();
-            LibraryMotor {
-                description: Some(spec.description.clone()),
-                pole_pairs: Some(spec.pole_pairs),
-                resistance_ohm: Some(spec.resistance),
-                inductance_h: Some(spec.inductance),
-                emf_constant_v_s: Some(spec.emf_constant),
-                v_bus_v: Some(inverter.v_bus),
-                rated_current_a: Some(spec.rated_current),
-                rated_torque_nm: Some(rated),
-                rated_rpm: Some(drive.rated_rpm()),
-                t_s: Some(inverter.t_s),
-                generates: true,
-                holds_rating: rating.map(|rating| {
-                    rating.is_ok_and(|torque| Held::Within.lost(torque, rated).is_none())
-                }),
-                rated_speed_torque_pct: torque.map(|torque| 100.0 * torque / rated),
-                tripped: rating.and_then(Result::err),
+    let drive = match motor.prepare(None) {
+        Ok(drive) => drive,
+        Err(error) => {
+            return LibraryMotor {
+                reason: Some(error.to_string()),
                 ..none
-            }
+            };
         }
-        Err(error) => LibraryMotor {
-            reason: Some(error.to_string()),
-            ..none
-        },
+    };
+    let (spec, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+    let most = greatest_ripple(&drive.spec);
+    let wrong = points.iter().find(|point| !point.is_right(most));
+    LibraryMotor {
+        description: Some(spec.description.clone()),
+        pole_pairs: Some(spec.pole_pairs),
+        resistance_ohm: Some(spec.resistance),
+        inductance_h: Some(spec.inductance),
+        emf_constant_v_s: Some(spec.emf_constant),
+        v_bus_v: Some(inverter.v_bus),
+        rated_current_a: Some(spec.rated_current),
+        rated_torque_nm: Some(drive.rated_torque()),
+        rated_rpm: Some(drive.rated_rpm()),
+        t_s: Some(inverter.t_s),
+        degrees_per_period: Some(degrees_per_period(&drive.spec)),
+        generates: true,
+        is_right: !points.is_empty() && wrong.is_none(),
+        limit: wrong.map(RatedPoint::limit),
+        points,
+        ..none
     }
 }

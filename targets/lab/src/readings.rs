@@ -18,7 +18,7 @@ pub const READINGS: [Readings; 4] = [
         corrected: "fcs-mpc:off_leg=physical,emf=model,discretisation=euler,hall_capture=timer",
     },
     Readings {
-        literal: "pdcc:saturation=keep_angle,emf=estimated,emf_filter=1,discretisation=euler,hall_capture=timer",
+        literal: "pdcc:reference=quasi_square,saturation=keep_angle,emf=estimated,emf_filter=1,discretisation=euler,hall_capture=timer",
         corrected: "pdcc:saturation=torque_priority,advance=2,emf=model,discretisation=euler,hall_capture=timer",
     },
     Readings {
@@ -26,7 +26,7 @@ pub const READINGS: [Readings; 4] = [
         corrected: "phcc:table=derived,emf=model,discretisation=euler,hall_capture=timer",
     },
     Readings {
-        literal: "pi-pwm:feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,discretisation=euler,hall_capture=timer",
-        corrected: "pi-pwm:feed_forward=on,bandwidth=1kHz,emf=model,discretisation=euler,hall_capture=timer",
+        literal: "pi-pwm:reference=quasi_square,feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,discretisation=euler,hall_capture=timer",
+        corrected: "pi-pwm:reference=quasi_square,feed_forward=on,bandwidth=1kHz,emf=model,discretisation=euler,hall_capture=timer",
     },
 ];

@@ -3,12 +3,28 @@
 
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::ir::{StatedError, stated_errors};
+use hexagen_codegen::spec::Reference;
 use hexagen_lab::accuracy::{OneStep, at_speeds, differences, one_step};
 use hexagen_lab::engine::{MotorSource, PlantOptions, Prepared, library, prepare};
 use rayon::prelude::*;
 
-/// Controllers with a modulator.
-const KINDS: [&str; 2] = ["pdcc", "pi-pwm"];
+/// Controllers with a modulator: by default, and with words and coefficients alone, without a table
+/// of the EMF's shape.
+const KINDS: [&str; 4] = [
+    "pdcc:reference=proportional",
+    "pi-pwm:reference=proportional",
+    "pdcc:reference=quasi_square",
+    "pi-pwm:reference=quasi_square",
+];
+
+/// Least share of steps with equal compare values, percent: they differ where the exact duty is near
+/// half a count, and by the misfit of a table, which is up to 0.3 counts.
+fn least_equal(drive: &Prepared) -> f64 {
+    match drive.spec.controller.common().reference {
+        Reference::QuasiSquare => 99.3,
+        Reference::Proportional => 70.0,
+    }
+}
 
 fn drive(motor: &MotorSource, variant: &str) -> Prepared {
     prepare(motor, Some(variant)).unwrap_or_else(|errors| panic!("{}: {errors}", motor.name))
@@ -25,10 +41,10 @@ fn steps_are_within_the_proven_bounds_and_compare_values_within_a_count() {
     for motor in library().iter().map(MotorSource::from) {
         for kind in KINDS {
             drives.push((32, drive(&motor, kind)));
-            drives.push((16, drive(&motor, &format!("{kind}:word=16"))));
+            drives.push((16, drive(&motor, &format!("{kind},word=16"))));
         }
     }
-    assert_eq!(drives.len(), 16 * 4);
+    assert_eq!(drives.len(), 16 * 8);
     drives.par_iter().for_each(|(word, drive)| {
         let found = accuracy(drive);
         let named = || format!("{}, {}: {found:?}", drive.motor, drive.variant);
@@ -37,8 +53,7 @@ fn steps_are_within_the_proven_bounds_and_compare_values_within_a_count() {
         assert!(found.decisions_equal_pct > 99.98, "{}", named());
         if *word == 32 {
             assert!(found.compares_apart_counts <= 1, "{}", named());
-            // Compare values differ where the exact duty is near half a count.
-            assert!(found.equal_steps_pct >= 99.3, "{}", named());
+            assert!(found.equal_steps_pct >= least_equal(drive), "{}", named());
         }
     });
 }
@@ -46,8 +61,8 @@ fn steps_are_within_the_proven_bounds_and_compare_values_within_a_count() {
 #[test]
 fn closed_loops_of_32_bit_words_have_the_figures_of_merit_of_floating_point() {
     let variants = [
-        "pdcc",
-        "pi-pwm",
+        "pdcc:reference=quasi_square",
+        "pi-pwm:reference=quasi_square",
         "fcs-mpc",
         "fcs-mpc:candidates=all",
         "phcc",
@@ -79,13 +94,26 @@ fn errors_of_the_papers_motor_are_proven_within_the_goal() {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
     for kind in KINDS {
         let drive = drive(&motor, kind);
+        // The misfit of the shape's table, times the set-point's voltage and the observed error.
+        let [most_volts, most_counts] = match drive.spec.controller.common().reference {
+            Reference::QuasiSquare => [1e-5, 0.02],
+            Reference::Proportional => [0.01, 1.5],
+        };
         let stated = stated_errors(drive.generated.graph.program());
         let bound = |name: &str| {
             let stated = stated.iter().find(|stated| stated.name == name);
             stated.map(StatedError::normal_bound).expect("is stated")
         };
-        assert!(bound("voltage") <= 1e-5, "{kind}: {} V", bound("voltage"));
-        assert!(bound("duty") <= 0.02, "{kind}: {} counts", bound("duty"));
+        assert!(
+            bound("voltage") <= most_volts,
+            "{kind}: {} V",
+            bound("voltage")
+        );
+        assert!(
+            bound("duty") <= most_counts,
+            "{kind}: {} counts",
+            bound("duty")
+        );
     }
 }
 
@@ -93,7 +121,7 @@ fn errors_of_the_papers_motor_are_proven_within_the_goal() {
 fn data_sheets_state_the_accuracy_of_16_bit_words() {
     for motor in library().iter().map(MotorSource::from) {
         for kind in KINDS {
-            let drive = drive(&motor, &format!("{kind}:word=16"));
+            let drive = drive(&motor, &format!("{kind},word=16"));
             let sheet = emit_datasheet(&drive.generated.graph, &drive.generated.interface);
             for name in ["VOLTAGE_ERROR", "DUTY_ERROR"] {
                 let row = format!("\n| `{name}` | ");

@@ -155,15 +155,15 @@ fn assert_all(figures: Vec<Figure>) {
 #[test]
 fn deadbeat_steps_at_standstill_match_the_circuit() {
     const VARIANTS: [&str; 13] = [
-        "pdcc:emf=estimated",
-        "pdcc:emf=estimated,emf_filter=1",
-        "pdcc:emf=estimated,saturation=keep_angle",
-        "pdcc:emf=estimated,saturation=nearest",
-        "pdcc:emf=estimated,delay=0",
-        "pdcc:emf=held",
-        "pdcc:emf=held,delay=0",
-        "pdcc:emf=model,hall_capture=timer",
-        "pdcc:emf=observer,hall_capture=timer",
+        "pdcc:reference=quasi_square,emf=estimated",
+        "pdcc:reference=quasi_square,emf=estimated,emf_filter=1",
+        "pdcc:reference=quasi_square,emf=estimated,saturation=keep_angle",
+        "pdcc:reference=quasi_square,emf=estimated,saturation=nearest",
+        "pdcc:reference=quasi_square,emf=estimated,delay=0",
+        "pdcc:reference=quasi_square,emf=held",
+        "pdcc:reference=quasi_square,emf=held,delay=0",
+        "pdcc:reference=quasi_square,emf=model,hall_capture=timer",
+        "pdcc:reference=quasi_square,emf=observer,hall_capture=timer",
         "pdcc:modulation=pair,emf=estimated",
         "pdcc:modulation=pair,emf=estimated,delay=0",
         "pdcc:modulation=pair,emf=model,hall_capture=timer",
@@ -211,7 +211,11 @@ fn torque_meets_the_demand_with_a_high_resistance() {
             "pdcc:modulation=pair,advance=1.5,emf=estimated",
             [0.16, 3.8],
         ),
-        (RESISTIVE, "pi-pwm:emf=estimated", [0.05, 0.5]),
+        (
+            RESISTIVE,
+            "pi-pwm:reference=quasi_square,emf=estimated",
+            [0.05, 0.5],
+        ),
         (CALM, "fcs-mpc:emf=estimated", [0.2, 5.5]),
         (
             CALM,
@@ -244,9 +248,9 @@ fn torque_meets_the_demand_with_a_high_resistance() {
 #[test]
 fn a_pi_controller_has_no_wind_up() {
     let variants = [
-        "pi-pwm:feed_forward=off",
-        "pi-pwm:emf=estimated",
-        "pi-pwm:emf=model,hall_capture=timer",
+        "pi-pwm:reference=quasi_square,feed_forward=off",
+        "pi-pwm:reference=quasi_square,emf=estimated",
+        "pi-pwm:reference=quasi_square,emf=model,hall_capture=timer",
         "pi-pwm:six_step=on",
     ];
     let figures = variants.par_iter().flat_map_iter(|variant| {
@@ -278,13 +282,13 @@ fn a_pi_controller_has_no_wind_up() {
 #[test]
 fn compensated_dead_time_has_no_effect() {
     let variants = [
-        "pdcc:emf=estimated",
-        "pdcc:emf=model,hall_capture=timer",
-        "pdcc:emf=held",
+        "pdcc:reference=quasi_square,emf=estimated",
+        "pdcc:reference=quasi_square,emf=model,hall_capture=timer",
+        "pdcc:reference=quasi_square,emf=held",
         "pdcc:modulation=pair,emf=estimated",
-        "pi-pwm:emf=estimated",
-        "pi-pwm:emf=model,hall_capture=timer",
-        "pi-pwm:feed_forward=off",
+        "pi-pwm:reference=quasi_square,emf=estimated",
+        "pi-pwm:reference=quasi_square,emf=model,hall_capture=timer",
+        "pi-pwm:reference=quasi_square,feed_forward=off",
         "pi-pwm:six_step=on",
     ];
     let set_points = [(6.0, 30), (10.0, 30), (4.0, 30), (-4.0, 30)];

@@ -34,7 +34,7 @@ fn assert_trips(row: &FaultRow, cause: Cause) {
 
 #[test]
 fn classes_do_what_physics_says() {
-    let drive = drive("pdcc");
+    let drive = drive("pdcc:reference=quasi_square");
     let study = studied(&drive);
     assert_eq!(
         (study.points.len(), study.rows.len()),
@@ -91,7 +91,7 @@ fn classes_do_what_physics_says() {
 
 #[test]
 fn sound_drives_do_not_trip() {
-    for variant in ["pdcc", "pi-pwm", "pdcc:emf=observer,hall_capture=timer"] {
+    for variant in ["pdcc", "pi-pwm", "pdcc:reference=quasi_square"] {
         let study = studied(&drive(variant));
         for row in study.of_part(Part::Sound) {
             assert_eq!((row.tripped, row.runs), (0, 8), "{variant}: {row:?}");
@@ -131,8 +131,8 @@ fn parts_that_a_drive_lacks_have_no_classes() {
         let drive = drive(variant);
         classes(&drive.spec).iter().any(|class| class.part == part)
     };
-    assert!(!has("pdcc", Part::EdgeTimer));
-    assert!(has("pdcc:hall_capture=timer", Part::EdgeTimer));
+    assert!(!has("pdcc:hall_capture=sampled", Part::EdgeTimer));
+    assert!(has("pdcc", Part::EdgeTimer));
     let names = |of: &Prepared| -> Vec<String> {
         let all = classes(&of.spec).into_iter();
         all.map(|class| class.name).collect()

@@ -65,7 +65,7 @@ fn pairs() -> Vec<(String, String)> {
         for emf in ["estimated", "model"] {
             pairs.push((
                 format!("{kind}:emf={emf}"),
-                format!("pdcc:saturation=nearest,emf={emf}"),
+                format!("pdcc:reference=quasi_square,saturation=nearest,emf={emf}"),
             ));
         }
     }

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// Variants of every kind, and the excess of their phase currents over the current limit, relative
 /// to the rated current: ripple, the more the fewer vectors they choose from.
 const VARIANTS: [(&str, f64); 5] = [
-    ("pdcc:speed_loop=on", 0.15),
+    ("pdcc:reference=quasi_square,speed_loop=on", 0.15),
     (
         "pdcc:speed_loop=on,emf=model,advance=2,hall_capture=timer",
         0.1,

@@ -19,11 +19,11 @@ const MOTORS: [&str; 4] = [
 const LOOPS: [&str; 7] = [
     "pdcc",
     "pdcc:saturation=nearest,modulation=pair",
-    "pdcc:emf_filter=0.5",
-    "pdcc:emf_filter=1",
+    "pdcc:reference=quasi_square,emf_filter=0.5",
+    "pdcc:reference=quasi_square,emf_filter=1",
     "pi-pwm",
-    "pi-pwm:bandwidth=2kHz",
-    "pi-pwm:feed_forward=off",
+    "pi-pwm:reference=quasi_square,bandwidth=2kHz",
+    "pi-pwm:reference=quasi_square,feed_forward=off",
 ];
 
 /// Runs one loop on both sides of its edges; returns the number of runs.

@@ -11,7 +11,10 @@ pub const DRIVES: &[Drive] = &[
     Drive {
         kind: "pdcc",
         motor: "trivedi-keshri-660w",
-        settings: &[("saturation", "torque_priority")],
+        settings: &[
+            ("reference", "quasi_square"),
+            ("saturation", "torque_priority"),
+        ],
     },
     Drive {
         kind: "pdcc",
@@ -106,12 +109,17 @@ pub const DRIVES: &[Drive] = &[
     Drive {
         kind: "pi-pwm",
         motor: "teknic-m2310p",
-        settings: &[("saturation", "nearest"), ("start_up", "short")],
+        settings: &[
+            ("reference", "quasi_square"),
+            ("saturation", "nearest"),
+            ("start_up", "short"),
+        ],
     },
     Drive {
         kind: "pi-pwm",
         motor: "anaheim-bly172s",
         settings: &[
+            ("reference", "quasi_square"),
             ("saturation", "keep_angle"),
             ("feed_forward", "off"),
             ("tuning", "slow_integral"),

@@ -35,10 +35,14 @@ const VARIANTS: [(&str, &str, Fields); 22] = [
     ),
     (
         "pdcc.delay-0",
-        "pdcc:delay=0,discretisation=euler,saturation=keep_angle",
+        "pdcc:reference=quasi_square,delay=0,discretisation=euler,saturation=keep_angle",
         &[],
     ),
-    ("pdcc.word-16", "pdcc:word=16,saturation=keep_angle", &[]),
+    (
+        "pdcc.word-16",
+        "pdcc:reference=quasi_square,word=16,saturation=keep_angle",
+        &[],
+    ),
     (
         "pdcc.observer",
         "pdcc:emf=observer,reference=proportional,hall_capture=timer",
@@ -46,7 +50,7 @@ const VARIANTS: [(&str, &str, Fields); 22] = [
     ),
     (
         "pdcc.observer-quasi-square",
-        "pdcc:emf=observer,saturation=nearest",
+        "pdcc:reference=quasi_square,emf=observer,saturation=nearest",
         &[],
     ),
     (
@@ -61,7 +65,7 @@ const VARIANTS: [(&str, &str, Fields); 22] = [
     ),
     (
         "pdcc.speed-loop",
-        "pdcc:speed_loop=on",
+        "pdcc:reference=quasi_square,speed_loop=on",
         &[("motor", "inertia", "3 kg cm2")],
     ),
     (
@@ -77,12 +81,12 @@ const VARIANTS: [(&str, &str, Fields); 22] = [
     ),
     (
         "pdcc.slew-rate",
-        "pdcc:slew_rate=200 A/s",
+        "pdcc:reference=quasi_square,slew_rate=200 A/s",
         &[("inverter", "hall_glitches", "3")],
     ),
     (
         "pdcc.dead-time",
-        "pdcc:emf=held,dead_time_compensation=on",
+        "pdcc:reference=quasi_square,emf=held,dead_time_compensation=on",
         &[("inverter", "dead_time", "900 ns")],
     ),
     (
@@ -116,7 +120,7 @@ const VARIANTS: [(&str, &str, Fields); 22] = [
     ("pi-pwm.six-step", "pi-pwm:six_step=on", &[]),
     (
         "pi-pwm.plain",
-        "pi-pwm:feed_forward=off,bandwidth=700Hz",
+        "pi-pwm:reference=quasi_square,feed_forward=off,bandwidth=700Hz",
         &[],
     ),
 ];

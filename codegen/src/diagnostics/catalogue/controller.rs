@@ -200,7 +200,7 @@ pub fn estimate_turns_too_far(
         Code::EstimateTurnsTooFar,
         at,
         format!(
-            "`emf`: {given}, but the EMF turns {turned} electrical degrees per control period at rated speed; above {limited} {consequence}; choose {remedy}`emf: model` with `reference: proportional` and `hall_capture: timer`, or a control period of at most {period}"
+            "`emf`: {given}, but the EMF turns {turned} electrical degrees per control period at rated speed; above {limited} {consequence}; choose {remedy}`emf: observer` with `reference: proportional` and `hall_capture: timer`, or a control period of at most {period}"
         ),
     )
 }

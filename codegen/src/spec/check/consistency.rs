@@ -5,7 +5,7 @@
 //! the commonest mistake of this field. One contradiction is one error, at the value that is most
 //! likely wrong; it tells which other reading would fit.
 
-use super::emf::{Emf, Reading, quasi_square_peak};
+use super::emf::{Emf, Reading};
 use super::inverter::Inverter;
 use super::motor::Motor;
 use super::reader::Reader;
@@ -248,7 +248,8 @@ fn fitting<'a>(
     {
         let change = "`rated_current` as `rms`".to_owned();
         let at = &current.part;
-        let constant = factor * phase * quasi_square_peak();
+        let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
+        let constant = factor * phase * shape.rated_peak();
         candidates.push((Other { change, at, phase }, constant));
     }
     if claim.code == Code::TorqueConstantContradiction {

@@ -108,13 +108,21 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static Kind> {
     known
 }
 
-/// Sampled edges by default; a capture timer needs at least two ticks per control period.
+/// The edges of a capture timer where one is stated, with at least two ticks per control period, else
+/// sampled ones.
 fn read_capture(
     reader: &Reader,
     inverter: &Inverter,
     errors: &mut Collector,
 ) -> Option<HallCapture> {
-    let edges: HallEdges = reader.choice_or_preset(errors, "hall_capture", &[]);
+    let by_default = if inverter.hall_timer_clock_given {
+        HallEdges::Timer
+    } else {
+        HallEdges::Sampled
+    };
+    let edges = reader
+        .choice(errors, "hall_capture", &[])
+        .unwrap_or(by_default);
     if edges == HallEdges::Sampled {
         return Some(HallCapture::Sampled);
     }

@@ -5,8 +5,8 @@ use super::motor::Motor;
 use super::reader::Reader;
 use crate::diagnostics::catalogue;
 use crate::diagnostics::{Collector, engineering};
-use crate::spec::ControllerSpec;
 use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
+use crate::spec::{ControllerSpec, EmfShape, Reference};
 
 /// Margin of the default trip level above the currents that whole vectors reach.
 const ROOM: f64 = 1.05;
@@ -21,7 +21,7 @@ struct Levels {
     max: f64,
 }
 
-/// Trip current and largest set-point, which is the rated current by default.
+/// Trip current and largest set-point.
 pub(super) fn finish(
     reader: &Reader,
     inverter: &Inverter,
@@ -30,9 +30,10 @@ pub(super) fn finish(
     controller: Option<&ControllerSpec>,
     errors: &mut Collector,
 ) -> Option<(f64, f64)> {
-    let levels = read(reader, inverter, adc, motor, errors)?;
+    let controller = controller?;
+    let levels = read(reader, inverter, adc, motor, controller, errors)?;
     let drive = Drive {
-        controller: controller?,
+        controller,
         emf_shape: motor.emf_shape?,
         resistance: motor.resistance?,
         inductance: motor.inductance?,
@@ -60,6 +61,7 @@ fn read(
     inverter: &Inverter,
     adc: &Adc,
     motor: &Motor,
+    controller: &ControllerSpec,
     errors: &mut Collector,
 ) -> Option<Levels> {
     let shown = adc.reach - adc.gain;
@@ -80,10 +82,10 @@ fn read(
         ));
         return None;
     }
-    let max = inverter
-        .max_current
-        .as_ref()
-        .map_or(rated.si, |given| given.si);
+    let max = inverter.max_current.as_ref().map_or_else(
+        || default_max(motor, controller, rated.si),
+        |given| given.si,
+    );
     if max < LEAST_COUNTS * adc.gain * (1.0 - 1e-9) {
         let part = reader.part("max_current", || engineering(max, "A"));
         errors.push(catalogue::max_current_below_counts(
@@ -96,6 +98,22 @@ fn read(
         return None;
     }
     Some(Levels { shown, max })
+}
+
+/// The `rated` current. The rated torque of a sinusoidal EMF may be that of a quasi-square current,
+/// as in block commutation; a sine has up to 2/sqrt(3) of its peak without more heat.
+fn default_max(motor: &Motor, controller: &ControllerSpec, rated: f64) -> f64 {
+    let is_sine = motor.emf_shape == Some(EmfShape::Sinusoidal)
+        && controller.common().reference == Reference::Proportional;
+    let per_ampere = motor
+        .emf_constant
+        .map(|constant| EmfShape::Sinusoidal.proportional_factor() * constant);
+    match (&motor.rated_torque, per_ampere) {
+        (Some(torque), Some(per_ampere)) if is_sine => {
+            (torque.si / per_ampere).clamp(rated, rated * 2.0 / 3.0_f64.sqrt())
+        }
+        _ => rated,
+    }
 }
 
 /// Twice the largest set-point, or more where whole vectors need it. At most what a saturated ADC

@@ -10,7 +10,6 @@ use crate::spec::EmfShape;
 use crate::spec::ast::Basis;
 use crate::spec::schema;
 use crate::spec::units::Dimension;
-use std::f64::consts::SQRT_2;
 
 /// The fields that state it, in the order in which they are taken.
 pub(super) const FIELDS: [&str; 3] = ["back_emf", "speed_constant", "torque_constant"];
@@ -23,11 +22,6 @@ const PLAUSIBLE: [f64; 2] = [1e-5, 100.0];
 pub(super) enum Winding {
     Star,
     Delta,
-}
-
-/// Peak of a quasi-square wave, which is 0 in a third of the turn, over its root mean square.
-pub(super) fn quasi_square_peak() -> f64 {
-    1.5_f64.sqrt()
 }
 
 /// What a constant refers to.
@@ -55,16 +49,14 @@ pub(super) enum Reading {
 impl Reading {
     /// The constant over the phase constant.
     pub fn factor(self, shape: EmfShape) -> f64 {
-        let is_sine = shape == EmfShape::Sinusoidal;
         match self {
             Self::PhasePeak => 1.0,
             Self::LinePeak => shape.line_to_line_peak(),
             Self::PhaseRms => shape.phase_rms(),
             Self::LineRms => shape.line_to_line_rms(),
-            Self::PerPeakAmpere if is_sine => shape.sine_factor(),
-            Self::PerRmsAmpere if is_sine => shape.sine_factor() * SQRT_2,
-            Self::PerRmsAmpere => shape.quasi_square_factor() * quasi_square_peak(),
-            Self::BlockMean | Self::PerPeakAmpere | Self::PerAmpere => shape.quasi_square_factor(),
+            Self::PerPeakAmpere => shape.rated_factor(),
+            Self::PerRmsAmpere => shape.rated_factor() * shape.rated_peak(),
+            Self::BlockMean | Self::PerAmpere => shape.quasi_square_factor(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
-use super::emf::{self, Emf, Winding, quasi_square_peak};
+use super::emf::{self, Emf, Winding};
 use super::reader::{Given, Reader};
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::ast::{Basis, Value};
@@ -60,7 +60,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
         emf,
         emf_constant,
         emf_shape,
-        rated_current: read_rated_current(reader, errors),
+        rated_current: read_rated_current(reader, emf_shape, errors),
         rated_torque: reader.plain_quantity(errors, "rated_torque"),
         rated_speed: reader.plain_quantity(errors, "rated_speed"),
         no_load_speed: reader.plain_quantity(errors, "no_load_speed"),
@@ -216,14 +216,17 @@ fn read_shape(reader: &Reader, errors: &mut Collector) -> Option<EmfShape> {
     Some(EmfShape::Sinusoidal)
 }
 
-/// The rated current is the peak of the quasi-square wave; a root mean square is that of the wave
-/// that heats the windings as much.
-fn read_rated_current<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Given<'a>> {
+/// The rated current is the peak of the wave that belongs to the EMF's shape.
+fn read_rated_current<'a>(
+    reader: &Reader<'a>,
+    shape: Option<EmfShape>,
+    errors: &mut Collector,
+) -> Option<Given<'a>> {
     let given = reader.quantity(errors, "rated_current")?;
     match given.basis {
         [] | [Basis::Peak] => Some(given),
         [Basis::Rms] => Some(Given {
-            si: given.si * quasi_square_peak(),
+            si: given.si * shape?.rated_peak(),
             ..given
         }),
         [.., last] => {

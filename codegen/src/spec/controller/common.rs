@@ -121,7 +121,7 @@ pub(crate) const KIND: Rule = rule::word("kind", "pdcc");
 pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<EmfSource>("emf", "estimated")
-            .preset("estimated")
+            .by_default("`observer` with pulse-width modulation and `reference: proportional`, unless an `emf_filter` is stated; else `estimated`")
             .about("Source of the EMF; `held` only with `modulation: three_phase` of `pdcc`, and with `fcs-mpc` and `phcc` unless `off_leg: physical` applies"),
         |options| Some(word(options.emf)),
     ),
@@ -134,7 +134,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     ),
     Row::of(
         rule::choice::<Reference>("reference", "quasi_square")
-            .preset("quasi_square")
+            .by_default("`proportional` where pulse-width modulation drives all three legs in every period, without `advance`; else `quasi_square`")
             .about("Current reference; `proportional` not with `modulation: pair`"),
         |options| Some(word(options.reference)),
     ),
@@ -188,7 +188,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     ),
     Row::of(
         rule::choice::<HallEdges>("hall_capture", "sampled")
-            .preset("sampled")
+            .by_default("`timer` with a `hall_timer_clock`, else `sampled`")
             .about("Timing of Hall edges"),
         |_| None,
     ),
@@ -321,18 +321,29 @@ pub(crate) fn refuse_held(reader: &Reader, common: &LoopOptions, errors: &mut Co
     }
 }
 
-/// Reads and checks the shared options. `advance_idle`: an advance has no effect with
-/// `reference: proportional`. None only together with an error.
+/// What the shared options depend on in a controller.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Traits {
+    /// Whether pulse-width modulation drives all three legs in every period.
+    pub pulses_three_legs: bool,
+    /// Whether no leg is turned off, so that an advance has no effect with a proportional reference.
+    pub advance_idle: bool,
+    /// Whether it uses the EMF.
+    pub uses_emf: bool,
+}
+
+/// Reads and checks the shared options. None only together with an error.
 pub(crate) fn read_common(
     reader: &Reader,
     surroundings: &Surroundings,
-    advance_idle: bool,
+    traits: Traits,
     errors: &mut Collector,
 ) -> Option<LoopOptions> {
-    let emf = reader.choice_or_preset(errors, "emf", &[]);
-    let emf_filter = read_filter(reader, emf, errors);
-    let reference = reader.choice_or_preset(errors, "reference", &[]);
     let advance = reader.plain(errors, "advance");
+    let is_advanced = advance.as_ref().is_some_and(|given| given.si > 0.0);
+    let reference = read_reference(reader, traits, is_advanced, errors);
+    let emf = read_emf(reader, traits, reference, errors);
+    let emf_filter = read_filter(reader, emf, errors);
     let delay = reader.integer_or_preset(errors, "delay");
     let discretisation = reader.choice_or_preset(errors, "discretisation", &[]);
     let (word, word_by_target) = read_word_length(reader, errors);
@@ -344,7 +355,7 @@ pub(crate) fn read_common(
     if let Some(advance) = &advance
         && advance.si > 0.0
         && reference == Reference::Proportional
-        && advance_idle
+        && traits.advance_idle
     {
         errors.push(catalogue::option_without_effect(
             &advance.part.location,
@@ -369,6 +380,42 @@ pub(crate) fn read_common(
         speed,
         slew_rate,
     })
+}
+
+/// A current that follows the EMF makes constant torque for every shape of it, where three legs can
+/// drive one; an advance shifts the sectors of a quasi-square one.
+fn read_reference(
+    reader: &Reader,
+    traits: Traits,
+    is_advanced: bool,
+    errors: &mut Collector,
+) -> Reference {
+    let by_default = if traits.pulses_three_legs && !is_advanced {
+        Reference::Proportional
+    } else {
+        Reference::QuasiSquare
+    };
+    reader
+        .choice(errors, "reference", &[])
+        .unwrap_or(by_default)
+}
+
+/// An estimate lags behind an EMF that turns, and the torque with it; a model knows the angle, which
+/// a proportional reference needs anyway, and its observer what the motor's data lack.
+fn read_emf(
+    reader: &Reader,
+    traits: Traits,
+    reference: Reference,
+    errors: &mut Collector,
+) -> EmfSource {
+    let knows_angle = reference == Reference::Proportional;
+    let observes = knows_angle && traits.uses_emf && reader.field("emf_filter").is_none();
+    let by_default = if observes && traits.pulses_three_legs {
+        EmfSource::Observer
+    } else {
+        EmfSource::Estimated
+    };
+    reader.choice(errors, "emf", &[]).unwrap_or(by_default)
 }
 
 /// The slew rate of the current set-point, at least the rated current in a minute: a period's change

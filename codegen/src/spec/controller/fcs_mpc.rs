@@ -1,7 +1,7 @@
 //! Options of finite-control-set model predictive control, and how they are read.
 
 use super::common::{
-    EmfSource, LoopOptions, Surroundings, read_common, refuse, refuse_commutation,
+    EmfSource, LoopOptions, Surroundings, Traits, read_common, refuse, refuse_commutation,
 };
 use super::off_leg::{OFF_LEG, OffLegModel, read_off_leg};
 use super::{Options, TurnsOff};
@@ -123,6 +123,11 @@ impl Options for FcsMpcSpec {
         if horizon == 2 {
             check_two_steps(reader, candidates, off_leg, errors);
         }
+        let traits = Traits {
+            pulses_three_legs: false,
+            advance_idle: without_sectors,
+            uses_emf: true,
+        };
         let options = Self {
             candidates,
             off_leg,
@@ -130,7 +135,7 @@ impl Options for FcsMpcSpec {
             horizon,
             switching_weight,
             torque_weight: torque_weight.map_or(0.0, |given| given.si),
-            common: read_common(reader, surroundings, without_sectors, errors)?,
+            common: read_common(reader, surroundings, traits, errors)?,
         };
         if options.common.emf == EmfSource::Held {
             check_held(reader, &options, errors);

@@ -2,7 +2,7 @@
 
 use super::Options;
 use super::common::{
-    self, CommonMode, LimitRule, LoopOptions, Surroundings, read_common, read_common_mode,
+    self, CommonMode, LimitRule, LoopOptions, Surroundings, Traits, read_common, read_common_mode,
     refuse_held,
 };
 use crate::diagnostics::Collector;
@@ -58,7 +58,12 @@ impl Options for PPwmSpec {
         let bandwidth = reader.plain_quantity_or_preset(errors, "bandwidth");
         let saturation = reader.choice_or_preset(errors, "saturation", &[]);
         let common_mode = read_common_mode(reader, surroundings, None, errors);
-        let common = read_common(reader, surroundings, true, errors)?;
+        let traits = Traits {
+            pulses_three_legs: true,
+            advance_idle: true,
+            uses_emf: true,
+        };
+        let common = read_common(reader, surroundings, traits, errors)?;
         refuse_held(reader, &common, errors);
         Some(Self {
             bandwidth,

@@ -2,7 +2,7 @@
 
 use super::common::{
     self, CommonMode, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference,
-    Surroundings, read_common, read_common_mode, read_dead_time_compensation, refuse,
+    Surroundings, Traits, read_common, read_common_mode, read_dead_time_compensation, refuse,
     refuse_commutation,
 };
 use super::{Options, TurnsOff};
@@ -69,7 +69,12 @@ impl Options for PdccSpec {
         let why = "outside commutation one leg of the pair is low throughout and the third is off";
         let pair = (!without_sectors).then_some((["modulation", "pair"], why));
         let common_mode = read_common_mode(reader, surroundings, pair, errors);
-        let common = read_common(reader, surroundings, without_sectors, errors)?;
+        let traits = Traits {
+            pulses_three_legs: without_sectors,
+            advance_idle: without_sectors,
+            uses_emf: true,
+        };
+        let common = read_common(reader, surroundings, traits, errors)?;
         if common.emf == EmfSource::Held && modulation == Modulation::Pair {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);

@@ -1,6 +1,6 @@
 //! Options of predictive hysteresis control, and how they are read.
 
-use super::common::{EmfSource, LoopOptions, Surroundings, read_common, refuse};
+use super::common::{EmfSource, LoopOptions, Surroundings, Traits, read_common, refuse};
 use super::off_leg::{OFF_LEG, OffLegModel, read_off_leg};
 use super::{Options, TurnsOff};
 use crate::diagnostics::catalogue::{self, Part};
@@ -127,7 +127,12 @@ impl Options for PhccSpec {
         let three_phase = candidates == PhccCandidates::ThreePhase;
         let off_leg = read_off_leg(reader, three_phase, errors);
         let given = reader.plain_quantity(errors, "band");
-        let common = read_common(reader, surroundings, false, errors)?;
+        let traits = Traits {
+            pulses_three_legs: false,
+            advance_idle: false,
+            uses_emf: true,
+        };
+        let common = read_common(reader, surroundings, traits, errors)?;
         let floats = !three_phase && off_leg == OffLegModel::Physical && common.delay == 1;
         if common.emf == EmfSource::Held && floats {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `off_leg: nominal` or `candidates: three_phase`";

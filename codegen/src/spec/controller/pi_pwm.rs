@@ -1,8 +1,8 @@
 //! Options of PI control, and how they are read.
 
 use super::common::{
-    self, CommonMode, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, read_common,
-    read_common_mode, read_dead_time_compensation, refuse, refuse_held,
+    self, CommonMode, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, Traits,
+    read_common, read_common_mode, read_dead_time_compensation, refuse, refuse_held,
 };
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
@@ -137,7 +137,12 @@ impl Options for PiPwmSpec {
         let why = "one leg of the pair is low throughout and the third is off";
         let pair = six_step.then_some((["six_step", "on"], why));
         let common_mode = read_common_mode(reader, surroundings, pair, errors);
-        let common = read_common(reader, surroundings, true, errors)?;
+        let traits = Traits {
+            pulses_three_legs: !six_step,
+            advance_idle: true,
+            uses_emf: feed_forward,
+        };
+        let common = read_common(reader, surroundings, traits, errors)?;
         refuse_held(reader, &common, errors);
         let time_constant = surroundings.inductance? / surroundings.resistance?;
         Some(Self {

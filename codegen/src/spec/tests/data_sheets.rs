@@ -397,7 +397,7 @@ fn rms_volts_and_rms_amperes_agree() {
         motor.emf_constant,
         36e-3 * 30.0 / PI * 2_f64.sqrt() / 3_f64.sqrt(),
     );
-    near(motor.rated_current, 5.0 * 1.5_f64.sqrt());
+    near(motor.rated_current, 5.0 * 2_f64.sqrt());
     near(3_f64.sqrt() * 36e-3 * 30.0 / PI, 0.595_435_3);
 }
 

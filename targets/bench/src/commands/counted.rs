@@ -57,7 +57,7 @@ mod tests {
         assert_eq!(keep_angle.motor, "trivedi-keshri-660w");
         assert_eq!(
             keep_angle.variant,
-            "pdcc:saturation=keep_angle,emf=held,target=cortex_m4"
+            "pdcc:reference=quasi_square,saturation=keep_angle,emf=held,target=cortex_m4"
         );
     }
 }

@@ -19,6 +19,7 @@ pub struct Goal {
 /// The goals of a target, by symbol of the step function.
 fn goals(target: Target) -> Vec<(&'static str, Goal)> {
     const PDCC: &str = "step_trivedi_keshri_660w_pdcc";
+    const PDCC_QUASI_SQUARE: &str = "step_trivedi_keshri_660w_pdcc_quasi_square";
     const PDCC_KEEP_ANGLE: &str = "step_trivedi_keshri_660w_pdcc_keep_angle";
     const FCS_MPC: &str = "step_trivedi_keshri_660w_fcs_mpc_three_phase";
     const PHCC: &str = "step_trivedi_keshri_660w_phcc_three_phase";
@@ -30,15 +31,16 @@ fn goals(target: Target) -> Vec<(&'static str, Goal)> {
     };
     match target {
         Target::CortexM4 => vec![
-            (PDCC, goal(Some(128), Some(441), None)),
+            (PDCC, goal(Some(330), None, None)),
+            (PDCC_QUASI_SQUARE, goal(Some(128), Some(441), None)),
             (PDCC_KEEP_ANGLE, goal(Some(71), Some(116), Some(64))),
             (FCS_MPC, goal(Some(70), Some(70), None)),
             (PHCC, goal(Some(80), None, None)),
             (PI_PWM_KEEP_ANGLE, goal(Some(69), Some(110), None)),
         ],
-        // Of the default drive, with 16-bit words.
+        // With 16-bit words.
         Target::CortexM0 => vec![
-            (PDCC, goal(Some(283), None, None)),
+            (PDCC_QUASI_SQUARE, goal(Some(283), None, None)),
             (PDCC_KEEP_ANGLE, goal(None, Some(371), None)),
         ],
         Target::Riscv32 => vec![

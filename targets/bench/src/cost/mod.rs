@@ -30,7 +30,7 @@ const PAPER_MOTOR: &str = "trivedi-keshri-660w";
 
 /// The whole interrupt of the firmware, and its drive.
 const INTERRUPT: &str = "interrupt_trivedi_keshri_660w_pdcc";
-const INTERRUPT_VARIANT: &str = "pdcc:saturation=keep_angle,emf=held";
+const INTERRUPT_VARIANT: &str = "pdcc:reference=quasi_square,saturation=keep_angle,emf=held";
 
 /// The program with the drives of the paper's experiment.
 const EXPERIMENT: &str = "experiment";

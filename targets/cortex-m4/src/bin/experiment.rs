@@ -25,8 +25,8 @@ mod drives {
         PdccLiteral, step_trivedi_keshri_660w_pdcc_literal:
             "../motors/trivedi-keshri-660w.toml",
             pdcc {
-                saturation: keep_angle, emf: estimated, emf_filter: 1, discretisation: euler,
-                hall_capture: timer
+                reference: quasi_square, saturation: keep_angle, emf: estimated, emf_filter: 1,
+                discretisation: euler, hall_capture: timer
             };
         PdccCorrected, step_trivedi_keshri_660w_pdcc_corrected:
             "../motors/trivedi-keshri-660w.toml",
@@ -46,14 +46,14 @@ mod drives {
         PiPwmLiteral, step_trivedi_keshri_660w_pi_pwm_literal:
             "../motors/trivedi-keshri-660w.toml",
             pi_pwm {
-                feed_forward: off, bandwidth: 800 Hz, integral_time: 0.5 ms, discretisation: euler,
-                hall_capture: timer
+                reference: quasi_square, feed_forward: off, bandwidth: 800 Hz, integral_time: 0.5 ms,
+                discretisation: euler, hall_capture: timer
             };
         PiPwmCorrected, step_trivedi_keshri_660w_pi_pwm_corrected:
             "../motors/trivedi-keshri-660w.toml",
             pi_pwm {
-                feed_forward: on, bandwidth: 1 kHz, emf: model, discretisation: euler,
-                hall_capture: timer
+                reference: quasi_square, feed_forward: on, bandwidth: 1 kHz, emf: model,
+                discretisation: euler, hall_capture: timer
             };
     }
 }

@@ -177,10 +177,7 @@ impl Checked {
                 motor.pole_pairs,
                 engineering(motor.resistance, "ohm"),
                 engineering(motor.inductance, "H"),
-                engineering(
-                    motor.emf_constant * motor.emf_shape.quasi_square_factor(),
-                    "Nm/A"
-                ),
+                engineering(motor.rated_torque_constant(), "Nm/A"),
                 motor
                     .inertia
                     .map_or("inertia unknown".to_owned(), |inertia| format!(

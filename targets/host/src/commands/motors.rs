@@ -1,9 +1,10 @@
-//! `hexagen motors`: the library, and whether each motor's default drive reaches its rating.
+//! `hexagen motors`: the library, and how well each motor's default drive does.
 
 use crate::cli::{Bar, Failure, note, print_json, print_table, print_text};
 use clap::Args;
-use hexagen_lab::closed_loop::TOLERANCE;
-use hexagen_lab::motors::{LibraryMotor, library_at_rating};
+use hexagen_lab::motors::{
+    COARSE, LibraryMotor, Limit, RIPPLE, RatedPoint, SPEEDS, TORQUE, library_at_rating,
+};
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 use serde::Serialize;
@@ -30,10 +31,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         return print_json(&Library { motors });
     }
     print_table(&table(&motors))?;
+    let [fine, coarse] = RIPPLE;
     print_text(&format!(
-        "R, L: per phase, star; EMF: phase peak per mechanical rad/s. Reached: mean torque of the default PDCC at rated \
-         speed and nominal bus voltage, in percent of the rated torque; holds: within {:.0} % of it.",
-        100.0 * TOLERANCE
+        "The default drive at rated torque and nominal bus voltage, by share of the rated speed; deg/Ts: electrical degrees\n\
+         in a control period at rated speed. Right: torque within {TORQUE} %, ripple at most {fine} % up to {COARSE} deg/Ts, {coarse} % above; else\n\
+         what limits the drive."
     ))?;
     for motor in &motors {
         if let Some(reason) = &motor.reason {
@@ -44,52 +46,63 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 fn table(motors: &[LibraryMotor]) -> Table {
+    let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
+    let (torque, ripple) = (
+        format!("torque % at {speeds} %"),
+        format!("ripple % at {speeds} %"),
+    );
     let mut table = Table::listed(
         ["motor"],
         [
             "pole pairs",
-            "R ohm",
-            "L mH",
-            "EMF V s/rad",
             "bus V",
             "Ts us",
             "rated A",
             "rated Nm",
             "rated rpm",
-            "generates",
-            "reached %",
-            "holds",
+            "deg/Ts",
+            &torque,
+            &ripple,
+            "right",
         ],
     );
     for motor in motors {
         let number = |value: Option<f64>, scale: f64| {
             value.map_or("-".to_owned(), |value| significant(value * scale, 3))
         };
+        let points = |of: fn(&RatedPoint) -> Option<f64>| {
+            let points = motor.points.iter().map(|point| match of(point) {
+                Some(value) => format!("{value:.1}"),
+                None => "-".to_owned(),
+            });
+            points.collect::<Vec<_>>().join(", ")
+        };
         table.row([
             motor.name.clone(),
             motor
                 .pole_pairs
                 .map_or("-".to_owned(), |pairs| pairs.to_string()),
-            number(motor.resistance_ohm, 1.0),
-            number(motor.inductance_h, 1e3),
-            number(motor.emf_constant_v_s, 1.0),
             number(motor.v_bus_v, 1.0),
             number(motor.t_s, 1e6),
             number(motor.rated_current_a, 1.0),
             number(motor.rated_torque_nm, 1.0),
             number(motor.rated_rpm, 1.0),
-            if motor.generates { "yes" } else { "no" }.to_owned(),
-            motor
-                .rated_speed_torque_pct
-                .map_or("-".to_owned(), |percent| format!("{percent:.1}")),
-            match (motor.holds_rating, motor.tripped) {
-                (_, Some(_)) => "trips",
-                (Some(true), None) => "yes",
-                (Some(false), None) => "no",
-                (None, None) => "-",
-            }
-            .to_owned(),
+            number(motor.degrees_per_period, 1.0),
+            points(|point| point.torque_pct),
+            points(|point| point.ripple_pct),
+            verdict(motor).to_owned(),
         ]);
     }
     table
+}
+
+/// Whether a motor's default drive is right, else what limits it.
+fn verdict(motor: &LibraryMotor) -> &'static str {
+    match motor.limit {
+        _ if motor.is_right => "yes",
+        Some(Limit::BusVoltage) => "bus voltage",
+        Some(Limit::StartOnFastRotor) => "trips at start",
+        Some(Limit::ControlPeriod) => "control period",
+        None => "not generated",
+    }
 }

@@ -35,7 +35,12 @@ fn every_drive_of_the_library_has_all_goals() {
 
 #[test]
 fn a_goal_that_is_left_out_is_missed() {
-    for variant in ["pdcc", "pdcc:saturation=nearest,word=16", "fcs-mpc", "phcc"] {
+    for variant in [
+        "pdcc",
+        "pdcc:reference=quasi_square,saturation=nearest,word=16",
+        "fcs-mpc",
+        "phcc",
+    ] {
         let graph = drive(variant).generated.graph;
         let scripts = emit_gappa(&graph);
         for subject in [Subject::Value, Subject::Error, Subject::TieBand] {

@@ -21,13 +21,13 @@ use std::env;
 /// the paper's motor, and the others for a random one each.
 const VARIANTS: [&str; 16] = [
     "pdcc",
-    "pdcc:emf=model,saturation=nearest",
+    "pdcc:reference=quasi_square,emf=model,saturation=nearest",
     "pdcc:emf=model,modulation=pair,saturation=keep_angle,advance=1.5",
     "pdcc:modulation=pair,word=16",
     "pdcc:reference=proportional,emf=observer",
-    "pdcc:delay=0,emf_filter=1,saturation=nearest,discretisation=euler",
+    "pdcc:reference=quasi_square,delay=0,emf_filter=1,saturation=nearest,discretisation=euler",
     "pi-pwm",
-    "pi-pwm:feed_forward=off,saturation=keep_angle,word=16",
+    "pi-pwm:reference=quasi_square,feed_forward=off,saturation=keep_angle,word=16",
     "pi-pwm:six_step=on",
     "fcs-mpc",
     "fcs-mpc:candidates=all,off_leg=nominal,word=16",
@@ -35,7 +35,7 @@ const VARIANTS: [&str; 16] = [
     "phcc",
     "phcc:word=16",
     "phcc:off_leg=nominal,emf=held",
-    "pdcc:speed_loop=on",
+    "pdcc:reference=quasi_square,speed_loop=on",
 ];
 
 /// A motor's text with an inertia, where it states none: what a speed loop needs.
@@ -167,7 +167,7 @@ fn the_stated_voltage_error_of_the_paper_motor_is_small() {
             .expect("a quantity of every modulating drive")
             .normal_bound()
     };
-    assert!(bound("pdcc:emf=model", "duty") < 0.02);
-    assert!(bound("pdcc:emf=model", "voltage") < 1e-4);
+    assert!(bound("pdcc:reference=quasi_square,emf=model", "duty") < 0.02);
+    assert!(bound("pdcc:reference=quasi_square,emf=model", "voltage") < 1e-4);
     assert!(bound("pdcc", "duty") < 0.1);
 }

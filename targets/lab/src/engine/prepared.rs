@@ -221,11 +221,7 @@ impl Prepared {
 
     /// Rated torque in newton metres: as specified, else that of the rated current.
     pub fn rated_torque(&self) -> f64 {
-        let motor = &self.spec.motor;
-        let per_ampere = motor.emf_constant * motor.emf_shape.quasi_square_factor();
-        motor
-            .rated_torque
-            .unwrap_or(motor.rated_current * per_ampere)
+        self.spec.motor.torque_rating()
     }
 
     /// The set-point of a torque in newton metres, at the nominal bus.
@@ -243,8 +239,7 @@ impl Prepared {
     }
 
     /// The default torque of measurements in newton metres: the rated one, clamped to the set-point
-    /// limit. (A sine of the rated peak current gives 9 % less than a quasi-square of it, which
-    /// ratings refer to.)
+    /// limit.
     pub fn demand(&self) -> f64 {
         self.rated_torque().min(self.reach())
     }

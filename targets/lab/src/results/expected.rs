@@ -206,7 +206,7 @@ pub fn design_table() -> Vec<DesignRow> {
         },
         DesignRow {
             label: "PDCC three_phase, nearest, model EMF",
-            variant: "pdcc:discretisation=euler,modulation=three_phase,saturation=nearest,emf=model,hall_capture=timer",
+            variant: "pdcc:reference=quasi_square,discretisation=euler,modulation=three_phase,saturation=nearest,emf=model,hall_capture=timer",
             timer: expected([point(3.30, 2.3, 0.2), point(3.25, 12.7, 3.4)], 87.0),
             sampled: None,
             is_plotted: true,
@@ -280,14 +280,14 @@ pub fn design_table() -> Vec<DesignRow> {
         },
         DesignRow {
             label: "PI-PWM three_phase, 800 Hz, Ti 0.5 ms, no feed-forward",
-            variant: "pi-pwm:discretisation=euler,feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest,hall_capture=timer",
+            variant: "pi-pwm:reference=quasi_square,discretisation=euler,feed_forward=off,bandwidth=800Hz,integral_time=0.5ms,saturation=nearest,hall_capture=timer",
             timer: expected([point(3.32, 11.0, 1.8), point(3.09, 21.0, 6.0)], 53.0),
             sampled: None,
             is_plotted: false,
         },
         DesignRow {
             label: "PI-PWM three_phase, 1 kHz, feed-forward, model EMF",
-            variant: "pi-pwm:discretisation=euler,feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest,hall_capture=timer",
+            variant: "pi-pwm:reference=quasi_square,discretisation=euler,feed_forward=on,bandwidth=1kHz,emf=model,saturation=nearest,hall_capture=timer",
             timer: expected([point(3.29, 3.1, 0.4), point(3.12, 11.0, 2.8)], 60.0),
             sampled: None,
             is_plotted: true,

@@ -1,0 +1,72 @@
+//! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
+
+use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
+use hexagen_lab::motors::{RatedPoint, SPEEDS, greatest_ripple};
+use rayon::prelude::*;
+
+/// Points at which a default drive is not right: motor, speed in percent, whether in braking alone.
+/// Control begins at the demanded torque, whatever the speed.
+const LIMITED: [(&str, u32, bool); 9] = [
+    // The bus is too low for this motor's EMF.
+    ("anaheim-bly341s", 100, false),
+    // A period is as long as the current's rise.
+    ("br2804-1700kv", 100, false),
+    // Control begins on a rotor that is too fast, or too fast for the whole braking torque.
+    ("velineon-3500", 100, false),
+    ("hurst-long", 100, true),
+    ("ipower-gbm2804h", 60, true),
+    ("ipower-gbm2804h", 100, true),
+    ("linix-45zwn24-40", 100, true),
+    ("odrive-d6374-150kv", 100, true),
+    ("tekin-redline-4600kv", 100, true),
+];
+
+/// The points at which a drive is not right: speed in percent, negative backward, and 1 for
+/// motoring, -1 for braking.
+fn wrong(drive: &Prepared) -> Vec<(RatedPoint, i32, i32)> {
+    let most = greatest_ripple(&drive.spec);
+    let mut wrong = Vec::new();
+    for speed in SPEEDS.map(|share| share as i32) {
+        for (turn, mode) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
+            let sign = f64::from(turn * mode);
+            let point = RatedPoint::measure(drive, turn * speed, sign).expect("runs");
+            if !point.is_right(most) {
+                wrong.push((point, turn * speed, mode));
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn every_library_motor_is_right_by_default() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
+    let drives: Vec<(&str, Prepared)> = motors
+        .iter()
+        .map(|motor| {
+            let drive = motor.prepare(Some("pdcc")).expect("generates");
+            (&motor.source.name[..], drive)
+        })
+        .collect();
+    let unexpected: Vec<String> = drives
+        .par_iter()
+        .flat_map_iter(|(name, drive)| {
+            let found = wrong(drive);
+            let limits = |speed: u32, mode: i32| {
+                LIMITED.iter().any(|&(limited, at, braking_only)| {
+                    limited == *name && at == speed && (!braking_only || mode == -1)
+                })
+            };
+            for (_, at, _) in LIMITED.iter().filter(|(limited, ..)| limited == name) {
+                let is_found = found.iter().any(|(point, ..)| point.speed_pct == *at);
+                assert!(is_found, "{name} is right at {at} % now");
+            }
+            found
+                .into_iter()
+                .filter(|(point, _, mode)| !limits(point.speed_pct, *mode))
+                .map(|(point, speed, mode)| format!("{name} {speed} % {mode}: {point:?}"))
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(unexpected.is_empty(), "{unexpected:#?}");
+}
