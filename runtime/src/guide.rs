@@ -54,6 +54,10 @@ pub mod troubleshooting {}
 /// Chapter 9: a test that shows when generated code changes.
 ///
 #[cfg_attr(doc, doc = include_str!("guide/snapshots.md"))]
+#[cfg_attr(doc, doc = "```rs")]
+#[cfg_attr(doc, doc = include_str!("../tests/generated_code.rs"))]
+#[cfg_attr(doc, doc = "```")]
+#[cfg_attr(doc, doc = include_str!("guide/snapshots_end.md"))]
 pub mod snapshots {}
 /// Chapter 10: two drives in one firmware.
 ///
