@@ -55,7 +55,7 @@ pub mod troubleshooting {}
 ///
 #[cfg_attr(doc, doc = include_str!("guide/snapshots.md"))]
 #[cfg_attr(doc, doc = "```rs")]
-#[cfg_attr(doc, doc = include_str!("../tests/generated_code.rs"))]
+#[cfg_attr(doc, doc = include_str!("guide/generated_code.rs"))]
 #[cfg_attr(doc, doc = "```")]
 #[cfg_attr(doc, doc = include_str!("guide/snapshots_end.md"))]
 pub mod snapshots {}
