@@ -15,7 +15,12 @@ fn files_of_the_guide_generate_a_drive() -> Result<(), BuildError> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     fs::write(folder.join("wheel.toml"), motor).expect("a folder for tests");
     fs::write(folder.join("ours.toml"), board).expect("a folder for tests");
-    let wheel = || Builder::new().root(folder).out_dir(folder).motor("wheel.toml");
+    let wheel = || {
+        Builder::new()
+            .root(folder)
+            .out_dir(folder)
+            .motor("wheel.toml")
+    };
     for written in [wheel().generate()?, wheel().board("ours.toml").generate()?] {
         assert_eq!(written[0].types, ["Wheel"]);
         assert_eq!(written[0].warnings, [""; 0]);
