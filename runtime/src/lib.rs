@@ -3,7 +3,12 @@
 //! `hexagen::controller!` emits a type per motor and controller: constants, tables and the law.
 //! This crate has the parts that all drives share: the [`Drive`] and its two halves, the
 //! [`Supervisor`] (faults, calibration, start-up), inputs ([`Sample`]) and outputs ([`Legs`]).
-//! Signs, sectors and wiring are in [`conventions`]; errors of the paper in [`errata`].
+//!
+//! - [`guide`]: from a data sheet to a motor that turns, in chapters of a few minutes each; begin with
+//!   [the first drive](guide::first_drive).
+//! - [`specification`]: every field, option and unit.
+//! - [`conventions`]: signs, angles, sectors, wiring.
+//! - [`errata`]: errors of the paper.
 #![no_std]
 
 pub mod arith;
@@ -23,6 +28,7 @@ mod drive;
 #[cfg_attr(doc, doc = include_str!("errata.md"))]
 pub mod errata {}
 mod format;
+pub mod guide;
 mod sample;
 mod set_point;
 mod shared;
@@ -31,6 +37,12 @@ mod signals;
 #[cfg(not(feature = "signals"))]
 #[path = "no_signals.rs"]
 mod signals;
+/// Reference: fields of motor, inverter and controller, and units.
+///
+#[cfg_attr(doc, doc = include_str!("specification/fields.md"))]
+#[cfg_attr(doc, doc = include_str!("specification/options.md"))]
+#[cfg_attr(doc, doc = include_str!("specification/units.md"))]
+pub mod specification {}
 mod status;
 mod supervisor;
 mod trip;

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 /// }
 /// ```
 ///
-/// Fields and units: the documentation of `hexagen_codegen::spec`.
+/// Fields, options and units: `hexagen::specification`. A guide in chapters: `hexagen::guide`.
 #[proc_macro]
 pub fn controller(tokens: TokenStream) -> TokenStream {
     let root = env::var_os("CARGO_MANIFEST_DIR")

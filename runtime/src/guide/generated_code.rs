@@ -1,0 +1,1 @@
+../../tests/generated_code.rs
