@@ -28,6 +28,7 @@ mod drive;
 #[cfg_attr(doc, doc = include_str!("errata.md"))]
 pub mod errata {}
 mod format;
+#[cfg(doc)]
 pub mod guide;
 mod sample;
 mod set_point;

@@ -17,6 +17,7 @@ pub mod mutation;
 pub mod options;
 pub mod pairwise;
 pub mod proof;
+pub mod random_motor;
 pub mod sensors;
 pub mod set;
 pub mod states;

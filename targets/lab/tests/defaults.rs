@@ -1,8 +1,11 @@
 //! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
 
-use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
-use hexagen_lab::motors::{RatedPoint, SPEEDS, greatest_ripple};
+use hexagen_codegen::spec::HallCapture;
+use hexagen_lab::engine::{MotorSource, PlantOptions, Prepared, SelectedMotor, prepare};
+use hexagen_lab::motors::{RatedPoint, SPEEDS, degrees_per_period, greatest_ripple};
+use hexagen_tests::random_motor::RandomMotor;
 use rayon::prelude::*;
+use std::env;
 
 /// Points at which a default drive is not right: motor, speed in percent, whether in braking alone.
 /// Control begins at the demanded torque, whatever the speed.
@@ -69,4 +72,40 @@ fn every_library_motor_is_right_by_default() {
         })
         .collect();
     assert!(unexpected.is_empty(), "{unexpected:#?}");
+}
+
+/// Random motors, in a push and where `HEXAGEN_WHOLE_PRODUCTS` is set, as in the nightly run.
+const DRAWN: [usize; 2] = [20, 200];
+
+/// Electrical degrees in a control period at rated speed, up to which a drive is right.
+const FASTEST: f64 = 15.0;
+
+#[test]
+fn random_motors_are_right_by_default() {
+    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
+    let wanted = DRAWN[usize::from(is_whole)];
+    // Motors with an edge timer that the generator takes.
+    let drawn = (0..).filter_map(|seed: u64| {
+        let text = RandomMotor::new(seed).toml();
+        let name = format!("motor {seed}");
+        let file = format!("{name}.toml");
+        let drive = prepare(&MotorSource { name, file, text }, Some("pdcc")).ok()?;
+        let is_timed = matches!(drive.spec.inverter.hall_capture, HallCapture::Timer { .. });
+        (is_timed && degrees_per_period(&drive.spec) <= FASTEST).then_some(drive)
+    });
+    let drawn: Vec<Prepared> = drawn.take(wanted).collect();
+    let found: Vec<String> = drawn
+        .par_iter()
+        .flat_map_iter(|drive| {
+            let degrees = degrees_per_period(&drive.spec);
+            wrong(drive).into_iter().map(move |(point, speed, mode)| {
+                format!(
+                    "{} {degrees:.1} deg {speed} % {mode}: {point:?}",
+                    drive.motor
+                )
+            })
+        })
+        .collect();
+    println!("{found:#?}");
+    assert!(found.is_empty(), "{} of {}", found.len(), 16 * drawn.len());
 }

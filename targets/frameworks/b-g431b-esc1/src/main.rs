@@ -28,7 +28,7 @@ hexagen::controller! {
         motor: "../../motors/anaheim-bly172s.toml",
         board: "st-b-g431b-esc1",
         inverter: { sensed_phases: ab, conversion_time: 0 us, max_current: 5 A },
-        controller: pdcc { modulation: three_phase, hall_capture: timer },
+        controller: pdcc,
     }
 }
 

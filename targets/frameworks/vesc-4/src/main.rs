@@ -11,11 +11,11 @@ use panic_halt as _;
 
 hexagen::controller! {
     /// A motor of this board's class, with Hall sensors. All legs are pulsed, so that the shunts in
-    /// the lower legs of phases a and b can be read in every period.
+    /// the lower legs of phases a and b can be read in every period. Hall edges are seen at samples.
     pub HubDrive {
         motor: "../../motors/trivedi-keshri-660w.toml",
         board: "vesc-4",
-        controller: pdcc { modulation: three_phase },
+        controller: pdcc { hall_capture: sampled },
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::HallCapture;
+use hexagen_codegen::spec::{HallCapture, Reference};
 use hexagen_lab::closed_loop::{Held, Measurement, RunOptions, STARTS, Trip, measure};
 use hexagen_lab::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use hexagen_lab::text::significant;
@@ -166,8 +166,13 @@ impl Checked {
     /// At most ten lines of at most 100 columns.
     fn lines(&self, drive: &Prepared, given: &str) -> Vec<String> {
         let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+        let common = drive.spec.controller.common();
+        let current = match common.reference {
+            Reference::Proportional => "proportional",
+            Reference::QuasiSquare => "quasi-square",
+        };
         let edges = match inverter.hall_capture {
-            HallCapture::Sampled => "edges seen at samples (an edge timer would tell angles finer)",
+            HallCapture::Sampled => "edges seen at samples (a timer is finer)",
             HallCapture::Timer { .. } => "edges by a capture timer",
         };
         let mut lines = vec![
@@ -186,9 +191,8 @@ impl Checked {
                     )),
             ),
             format!(
-                "controller  {}, words of {} bits, {edges}",
-                self.controller,
-                drive.spec.controller.common().word
+                "controller  {}, {}-bit words, {current} current, {edges}",
+                self.controller, common.word
             ),
             format!(
                 "sensing     {} bits to {}: {} a count, rated current {} counts; trips at {}",

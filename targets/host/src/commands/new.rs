@@ -140,7 +140,7 @@ const INVERTER: &[Line] = &[
     needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
     needed(
         &["hall_timer_clock"],
-        "Clock of a timer that captures Hall edges, for hall_capture = \"timer\".",
+        "Clock of a timer that captures Hall edges, if the board has one.",
         "1 MHz",
     )
     .optional(),

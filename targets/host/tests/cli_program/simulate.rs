@@ -315,7 +315,7 @@ fn a_free_shaft_tells_the_speed_that_it_reached() {
         (&Value::Null, &Value::Null)
     );
     let said = run(["simulate", PAPER].iter().chain(&free));
-    assert!(said.stdout.contains("free shaft: 718.9"), "{}", said.stdout);
+    assert!(said.stdout.contains("free shaft: 714.9"), "{}", said.stdout);
 }
 
 #[test]

@@ -240,10 +240,11 @@ fn compare_tells_accuracy_per_controller_and_word_length() {
         let counts = row["histogram"].as_array().expect("a list");
         let counted: f64 = counts.iter().filter_map(Value::as_f64).sum();
         assert_eq!(counted, 2.0 * number(one_step, "steps"));
-        let least_snr = if number(row, "word") == 32.0 {
-            110.0
-        } else {
-            60.0
+        // Where the current follows the EMF, a table's misfit is more than the rounding of wide words.
+        let least_snr = match number(row, "word") {
+            32.0 if modulates(row) => 75.0,
+            32.0 => 110.0,
+            _ => 60.0,
         };
         assert!(number(one_step, "snr_db") > least_snr, "{row}");
     }
@@ -251,11 +252,13 @@ fn compare_tells_accuracy_per_controller_and_word_length() {
 
 #[test]
 fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
-    let result = compared();
-    let rows = result["rows"].as_array().expect("a list");
-    let of_32_bits = rows.iter().filter(|row| number(row, "word") == 32.0);
+    let rows = ["p-pwm", "pdcc", "pi-pwm"].map(|kind| {
+        let variant = format!("{kind}:reference=quasi_square,word=32");
+        let result = run(["compare", PAPER, "--controller", &variant, "--json"]).json();
+        result["rows"][0].clone()
+    });
     let mut compared = 0;
-    for row in of_32_bits.filter(|row| modulates(row)) {
+    for row in &rows {
         let one_step = &row["one_step"];
         assert!(number(one_step, "bound_v") <= 1e-5, "{row}");
         assert!(number(one_step, "equal_steps_pct") >= 99.9, "{row}");

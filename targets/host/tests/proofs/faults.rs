@@ -75,7 +75,7 @@ fn planted_faults_are_refused() {
         .iter()
         .find(|motor| motor.name == "trivedi-keshri-660w");
     let motor = motor.expect("the paper's motor");
-    let generated = generated(motor.text, "pdcc").expect("the default drive");
+    let generated = generated(motor.text, "pdcc:reference=quasi_square").expect("generates");
     let scripts = emit_gappa(&generated.graph);
     let all = env::var_os("HEXAGEN_ALL_FAULTS").is_some();
     let (mut found, mut count, mut wrong) = (0, 0, vec![]);

@@ -86,7 +86,7 @@ fn a_goal_that_is_left_out_is_missed() {
 
 #[test]
 fn a_drive_whose_scripts_lack_goals_is_not_proved() {
-    let drives = [drive("pdcc")];
+    let drives = [drive("pdcc:reference=quasi_square")];
     let scripts = emit_gappa(&drives[0].generated.graph);
     let of_set_current = |script: &&Script| script.name.starts_with("set_current");
     let few: Vec<Script> = scripts.iter().filter(of_set_current).cloned().collect();

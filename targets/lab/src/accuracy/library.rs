@@ -8,8 +8,8 @@ use crate::results::SPEEDS;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// The compared law: predictive deadbeat, the only one with a deadbeat voltage.
-pub const LAW: &str = "pdcc";
+/// The compared law: predictive deadbeat with a quasi-square current, which needs no table.
+pub const LAW: &str = "pdcc:reference=quasi_square";
 
 /// One motor.
 #[derive(Clone, Debug, Serialize)]

@@ -25,12 +25,14 @@ impl Random {
 }
 
 /// A motor with its inverter.
+#[derive(Clone, Debug)]
 pub struct RandomMotor {
     toml: String,
 }
 
 impl RandomMotor {
     /// The motor of this number.
+    #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut random = Random(seed);
         let bus = random.one_of(&[12.0, 18.0, 24.0, 36.0, 48.0, 60.0, 96.0, 160.0, 320.0]);
@@ -63,6 +65,7 @@ impl RandomMotor {
     }
 
     /// Its file.
+    #[must_use]
     pub fn toml(self) -> String {
         self.toml
     }
