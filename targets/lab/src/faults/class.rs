@@ -82,6 +82,9 @@ const DISPLACED: f64 = 15.0;
 /// Placement error of a sound drive's Hall sensors, electrical degrees.
 const PLACED: f64 = 5.0;
 
+/// True over stated current per ADC count of a sound drive's two channels.
+const APART: [f64; 2] = [1.01, 0.99];
+
 /// Dead time beyond what the specification of a sound drive states, second.
 const UNSTATED: f64 = 1e-6;
 
@@ -245,6 +248,10 @@ impl List {
         self.add(part, "bus 15 % low", Defect::Bus { factor, is_told });
         let dead_time = PlantDefect::DeadTime { more: UNSTATED };
         self.plant(part, "1 us of dead time unstated", dead_time);
+        let apart = PlantDefect::AdcScale(APART);
+        self.plant(part, "current sensors 2 % apart", apart);
+        let noise = PlantDefect::AdcNoise { rms: 1.0 };
+        self.plant(part, "noise of 1 ADC count rms", noise);
         for (name, error_deg) in [
             ("Hall sensor Ha 5 deg off", [PLACED, 0.0, 0.0]),
             ("all Hall sensors 5 deg off", [PLACED; 3]),

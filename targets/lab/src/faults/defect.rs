@@ -62,6 +62,13 @@ pub enum PlantDefect {
         /// Second.
         more: f64,
     },
+    /// True over stated current per ADC count of the two channels.
+    AdcScale([f64; 2]),
+    /// Noise of the current ADCs.
+    AdcNoise {
+        /// Counts rms.
+        rms: f64,
+    },
     /// Displaced Hall sensors.
     Halls {
         /// Electrical degrees; positive is late in forward rotation.
@@ -143,6 +150,16 @@ impl PlantDefect {
             Self::DeadTime { more } => {
                 let most = MOST_DEAD_TIME * plant.pwm_period();
                 plant.dead_time = plant.dead_time.max((plant.dead_time + more).min(most));
+            }
+            Self::AdcScale(scales) => {
+                for (channel, scale) in plant.adc.iter_mut().zip(scales) {
+                    channel.amperes_per_count *= scale;
+                }
+            }
+            Self::AdcNoise { rms } => {
+                for channel in &mut plant.adc {
+                    channel.noise = rms;
+                }
             }
             Self::Halls { error_deg } => {
                 let known = plant.hall_error_deg;

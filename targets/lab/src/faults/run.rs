@@ -112,7 +112,7 @@ impl<'d> Bench<'d> {
         let set_point = options.set_point(drive, point.torque_nm);
         let controller = Watched {
             engine: drive.engine(self.model, set_point),
-            signals: Signals::new(&self.plant, place as u32),
+            signals: Signals::new(&self.plant, place as u64),
             bus: drive.bus_counts(self.plant.v_bus),
             lost: 0,
             last: Legs::OFF,

@@ -7,6 +7,7 @@
 //! Units are SI throughout; angles are electrical radians unless a name says otherwise.
 
 mod adc;
+mod check;
 mod emf;
 mod energy;
 mod gates;
