@@ -1,6 +1,7 @@
 //! The classes of faults of a drive, by the part that breaks.
 
 use super::defect::{CurrentDefect, Defect, PlantDefect, SignalDefect};
+use crate::plant::Short;
 use hexagen_codegen::spec::{BusSource, HallCapture, Spec};
 use serde::Serialize;
 
@@ -169,6 +170,14 @@ impl List {
                 let name = format!("leg {phase}: {switch} switch stays off");
                 self.plant(part, name, PlantDefect::DeadSwitch { leg, is_upper });
             }
+        }
+        for [x, y] in [[0, 1], [1, 2], [2, 0]] {
+            let name = format!("phases {} and {} shorted", PHASES[x], PHASES[y]);
+            self.plant(part, name, PlantDefect::Short(Short::Legs([x, y])));
+        }
+        for (leg, phase) in PHASES.into_iter().enumerate() {
+            let name = format!("phase {phase} shorted to minus");
+            self.plant(part, name, PlantDefect::Short(Short::ToMinus(leg)));
         }
         let name = "wires of phases a and b exchanged";
         self.plant(part, name, PlantDefect::WiresExchanged);

@@ -1,7 +1,7 @@
 //! What may break: in the plant, in the signals that the drive reads, in the call of its control
 //! loop.
 
-use crate::plant::PlantParams;
+use crate::plant::{PlantParams, Short};
 
 /// What breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,8 @@ pub enum PlantDefect {
         /// Whether it is the upper one.
         is_upper: bool,
     },
+    /// A short circuit at the motor.
+    Short(Short),
     /// The wires of phases a and b change places, with the current that each leg carries.
     WiresExchanged,
     /// True over stated R, L and EMF constant.
@@ -145,6 +147,7 @@ impl PlantDefect {
                 };
                 dead[leg] = true;
             }
+            Self::Short(short) => plant.wiring.short = Some(short),
             Self::WiresExchanged => plant.wiring.windings.swap(0, 1),
             Self::Motor([r, l, k_b]) => *plant = plant.clone().scaled(r, l, k_b),
             Self::DeadTime { more } => {

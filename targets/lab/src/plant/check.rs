@@ -1,7 +1,7 @@
 //! The check of plant parameters.
 
 use super::adc::full_scale;
-use super::{AdcChannel, EmfShape, Mechanics, PlantError, PlantParams};
+use super::{AdcChannel, EmfShape, Mechanics, PlantError, PlantParams, Short, Wiring};
 use hexagen_codegen::diagnostics::engineering;
 
 /// What a check found.
@@ -104,16 +104,25 @@ impl PlantParams {
     }
 
     fn check_wiring(&self) -> Checked {
-        let mut windings = self.wiring.windings;
+        let Wiring {
+            mut windings,
+            open,
+            short,
+            ..
+        } = self.wiring;
         windings.sort_unstable();
         let stray = windings.iter().zip(0..).find(|&(&at, place)| at != place);
         let value = (stray.map_or(0.0, |(&at, _)| at as f64), "");
-        require(
-            stray.is_none(),
-            "windings",
-            value,
-            "0, 1 and 2 in any order",
-        )
+        let limit = "0, 1 and 2 in any order";
+        require(stray.is_none(), "windings", value, limit)?;
+        let is_there = |leg: usize| leg < 3 && !open[leg];
+        let (ok, leg) = match short {
+            None => return Ok(()),
+            Some(Short::ToMinus(leg)) => (is_there(leg), leg),
+            Some(Short::Legs([x, y])) => (is_there(x) && is_there(y) && x != y, y),
+        };
+        let limit = "a leg of its own, 0 to 2, whose wire is not open";
+        require(ok, "short", (leg as f64, ""), limit)
     }
 
     fn check_halls(&self) -> Checked {

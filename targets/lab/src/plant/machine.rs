@@ -4,6 +4,7 @@ use super::gates::{Gate, Gates};
 use super::hall::Sensors;
 use super::network::{Network, balance, set_shape};
 use super::segment::{Segment, Series, TERMS, integral};
+use super::short::{Detour, tied};
 use super::{EmfShape, Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
 use hexagen::{Legs, Sample};
 
@@ -247,9 +248,11 @@ impl Plant {
 
     /// A leg `t` seconds into the period.
     fn leg(&self, leg: usize, t: f64) -> LegNow {
+        let gates = self.gates.state();
+        let detour = Detour::of(self.params.wiring.short, gates, self.params.v_bus);
         LegNow {
-            current: self.currents[leg],
-            gate: self.gates.state()[leg],
+            current: detour.legs(self.currents)[leg],
+            gate: gates[leg],
             held_for: self.gates.held_for(t)[leg],
         }
     }
@@ -299,7 +302,7 @@ impl Plant {
         while t < end {
             let until = self.gates.advance_to(t).min(end);
             self.prepare_segment(t, until);
-            let gates = self.network.reached(self.gates.state());
+            let gates = self.connect();
             let planned = self.segment.duration;
             let zero_leg = self
                 .network
@@ -323,6 +326,18 @@ impl Plant {
             let whole = h >= planned && t + planned >= until - 1e-9 * t_s;
             t = if whole { until } else { t + h };
         }
+    }
+
+    /// What the gates connect to the windings, for the next segment.
+    fn connect(&mut self) -> [Gate; 3] {
+        let gates = self.network.reached(self.gates.state());
+        let short = self.params.wiring.short;
+        self.segment.detour = Detour::of(short, gates, self.params.v_bus);
+        let emf = self
+            .segment
+            .shape
+            .map(|series| self.segment.omega_m * series[0]);
+        tied(short, gates, self.currents, emf)
     }
 
     /// Turns the rotor by the segment that ends, with the impulse (N m s) of the motor's torque.

@@ -1,5 +1,6 @@
 //! Parameters of the plant in SI units, and their check.
 
+use super::Short;
 use hexagen_codegen::diagnostics::engineering;
 use serde::{Deserialize, Serialize};
 
@@ -73,6 +74,9 @@ pub struct Wiring {
     pub upper_dead: [bool; 3],
     /// Whether the lower switch never turns on; its diode conducts.
     pub lower_dead: [bool; 3],
+    /// A short circuit at the motor; no wire that it ties may be open.
+    #[serde(default)]
+    pub short: Option<Short>,
 }
 
 impl Default for Wiring {
@@ -82,6 +86,7 @@ impl Default for Wiring {
             open: [false; 3],
             upper_dead: [false; 3],
             lower_dead: [false; 3],
+            short: None,
         }
     }
 }
