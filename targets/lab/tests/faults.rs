@@ -3,6 +3,7 @@
 use hexagen_lab::closed_loop::Cause;
 use hexagen_lab::engine::{Model, MotorSource, PlantOptions, Prepared, prepare};
 use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, classes, study};
+use hexagen_lab::plant::SHORT_RESISTANCE;
 
 fn drive(variant: &str) -> Prepared {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("is in the library");
@@ -83,6 +84,26 @@ fn classes_do_what_physics_says() {
     for phase in ["a", "b", "c"] {
         let [least, greatest] = torque(&format!("wire of phase {phase} open"));
         assert!(least > 5.0 && greatest < 90.0, "{least} {greatest}");
+    }
+    // The bus drives its current through a short and two switches in every period. Samples are taken
+    // while pulsed legs are low: it shows in them once a leg stays high, and in phase c never, which
+    // has no sensor.
+    let across = drive.spec.inverter.v_bus / SHORT_RESISTANCE;
+    let shorts: Vec<&FaultRow> = study
+        .rows
+        .iter()
+        .filter(|row| row.fault.contains("shorted"))
+        .collect();
+    assert_eq!(shorts.len(), 6);
+    for row in shorts {
+        let over = row.largest_a / across;
+        assert!((1.0..1.1).contains(&over), "{row:?}");
+        if row.fault == "phase c shorted to minus" {
+            assert_eq!(row.seen, Seen::Never, "{row:?}");
+        } else {
+            assert_trips(row, Cause::AdcRange);
+            assert!(row.after_ms.is_some_and(|ms| ms > 1.0), "{row:?}");
+        }
     }
     // A field that turns backward makes no mean torque.
     let [least, greatest] = torque("wires of phases a and b exchanged");

@@ -33,10 +33,10 @@ fn samples_have_the_whole_ticks_since_the_last_edge() {
         params.hall_ticks_per_period = TICKS;
         let omega_m = f64::to_radians(per_period) / params.t_s / f64::from(params.pole_pairs);
         let mut plant = Plant::new(params, f64::to_radians(start), omega_m).expect("a plant");
-        let mut hall = plant.sample().hall();
+        let mut hall = plant.sample(Legs::OFF).hall();
         for period in 1..=400 {
             plant.run_period(Legs::OFF, &mut ());
-            let sample = plant.sample();
+            let sample = plant.sample(Legs::OFF);
             let place = format!("{start} + {period} x {per_period} degrees");
             match ticks_since_edge(start, per_period, f64::from(period)) {
                 None => assert_eq!(sample.ticks(), u16::MAX, "{place}"),

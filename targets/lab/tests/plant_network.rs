@@ -429,14 +429,12 @@ fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
     let mut params = motor();
     params.adc = [
         AdcChannel {
-            bits: 12,
             amperes_per_count: 0.02,
-            offset: 2048.0,
+            ..AdcChannel::bipolar(12, 40.0)
         },
         AdcChannel {
-            bits: 10,
             amperes_per_count: -0.1,
-            offset: 512.0,
+            ..AdcChannel::bipolar(10, 40.0)
         },
     ];
     params.hall_error_deg = [4.0, 0.0, 0.0];
@@ -444,9 +442,9 @@ fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
     params.k_phase = [0.0; 3];
     let omega_e = 1.0_f64.to_radians() / T_S; // one electrical degree per period
     let mut plant = Plant::new(params, 29.5_f64.to_radians(), omega_e / 4.0).unwrap();
-    assert_eq!(plant.sample().ticks(), u16::MAX);
+    assert_eq!(plant.sample(Legs::OFF).ticks(), u16::MAX);
     plant.set_currents([1.0, -3.0]);
-    let sample = plant.sample();
+    let sample = plant.sample(Legs::OFF);
     assert_eq!((sample.adc()[0], sample.adc()[1]), (2098, 542));
     for period in 1..=100_u16 {
         plant.run_period(Legs::OFF, &mut ());
@@ -457,7 +455,7 @@ fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
             a if a < 90.0 => (0b101, Some(a - 34.0)),
             a => (0b100, Some(a - 90.0)),
         };
-        let sample = plant.sample();
+        let sample = plant.sample(Legs::OFF);
         assert_eq!(sample.hall(), code, "{angle}");
         let ticks = since.map_or(f64::from(u16::MAX), |degrees| degrees * 1000.0);
         assert_close(f64::from(sample.ticks()), ticks, 1.0);
@@ -490,5 +488,9 @@ fn parameters_out_of_range_are_refused_by_name() {
         },
         "flat_top_deg",
     );
+    refuse(|p| p.adc[1].noise = -1.0, "adc noise");
+    refuse(|p| p.adc[1].instant = 30e-6, "adc instant");
+    // The second channel before the first.
+    refuse(|p| p.adc[0].instant = 1e-6, "adc instant");
     refuse(|p| p.hall_error_deg[1] = TAU * 10.0, "hall_error_deg");
 }

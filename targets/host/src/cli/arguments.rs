@@ -145,6 +145,17 @@ pub struct PlantArguments {
     /// two for a and b
     #[arg(long, value_name = "CURRENT", value_parser = quantity::adc_offset, allow_hyphen_values = true)]
     pub adc_offset: Option<[f64; 2]>,
+    /// True over stated current per ADC count, unknown to the controller: one factor for both
+    /// sensed phases, or two
+    #[arg(long, value_name = "X", value_parser = quantity::adc_scale, allow_hyphen_values = true)]
+    pub scale_adc: Option<[f64; 2]>,
+    /// Gaussian noise of the current ADCs in counts rms, the same in every run
+    #[arg(long, value_name = "COUNTS", value_parser = quantity::counts, allow_hyphen_values = true)]
+    pub adc_noise: Option<f64>,
+    /// Time from the sample of the first sensed phase to that of the second [default: the motor
+    /// file's, 0 with sensors in the phases]
+    #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
+    pub conversion_time: Option<f64>,
     /// True bus voltage; the controller uses the motor file's or the measured one
     #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage, allow_hyphen_values = true)]
     pub v_bus: Option<f64>,
@@ -181,6 +192,9 @@ impl PlantArguments {
             adc_bits: self.adc_bits,
             adc_range: self.adc_range.clone(),
             adc_offset: self.adc_offset,
+            scale_adc: self.scale_adc,
+            adc_noise: self.adc_noise,
+            conversion_time: self.conversion_time,
             v_bus: self.v_bus,
             scale_r: self.scale_r,
             scale_l: self.scale_l,
@@ -223,6 +237,8 @@ impl PlantArguments {
             "inductance" if self.scale_l.is_some() => "--scale-l",
             "k_phase" if self.scale_kb.is_some() => "--scale-kb",
             "adc offset" if self.adc_offset.is_some() => "--adc-offset",
+            "adc noise" if self.adc_noise.is_some() => "--adc-noise",
+            "adc instant" if self.conversion_time.is_some() => "--conversion-time",
             "hall_error_deg" if self.hall_error.is_some() => "--hall-error",
             "inertia" => "--inertia",
             "opposing_torque" => "--load",

@@ -78,14 +78,32 @@ pub(super) fn current_text(text: &str) -> Result<String, String> {
 
 /// Amperes of one channel or of two, `0.2A` or `0.2A,-0.1A`.
 pub(super) fn adc_offset(text: &str) -> Result<[f64; 2], String> {
-    let list = text
-        .split(',')
-        .map(|part| quantity(part, Dimension::Current))
-        .collect::<Result<Vec<_>, _>>()?;
+    per_channel(text, |part| quantity(part, Dimension::Current))
+}
+
+/// Factors of one channel or of two, `1.01` or `1.01,0.99`.
+pub(super) fn adc_scale(text: &str) -> Result<[f64; 2], String> {
+    per_channel(text, factor)
+}
+
+/// A value for both current channels, or one for each.
+fn per_channel(
+    text: &str,
+    parse: impl Fn(&str) -> Result<f64, String>,
+) -> Result<[f64; 2], String> {
+    let list = text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?;
     match list[..] {
         [both] => Ok([both; 2]),
-        [a, b] => Ok([a, b]),
-        _ => Err("give one current for both phases, or two for a and b".to_owned()),
+        [first, second] => Ok([first, second]),
+        _ => Err("give one value for both sensed phases, or two".to_owned()),
+    }
+}
+
+/// Counts of an ADC.
+pub(super) fn counts(text: &str) -> Result<f64, String> {
+    match split(text.trim()) {
+        Some((number, "" | "count" | "counts")) => Ok(number),
+        _ => Err(format!("`{text}` is not a number of counts")),
     }
 }
 
@@ -149,6 +167,8 @@ mod tests {
         assert_eq!(hall_error("5deg,-3,0"), Ok([5.0, -3.0, 0.0]));
         assert_eq!(adc_offset("200mA"), Ok([0.2; 2]));
         assert_eq!(adc_offset("0.2A,-1"), Ok([0.2, -1.0]));
+        assert_eq!(adc_scale("1.01,0.99"), Ok([1.01, 0.99]));
+        assert_eq!(counts("1.5 counts"), Ok(1.5));
     }
 
     #[test]
@@ -171,6 +191,7 @@ mod tests {
             Err("-1e300 is out of range: at most 100000 Nm".to_owned())
         );
         assert!(hall_error("1,2").is_err() && adc_offset("1,2,3").is_err());
+        assert!(adc_scale("1,200").is_err() && counts("1 A").is_err());
         assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
     }
 }

@@ -44,6 +44,8 @@ pub struct Point {
     pub torque_pct: Option<f64>,
     /// Ripple of the torque, peak to peak in percent of its mean.
     pub ripple_pp_pct: Option<f64>,
+    /// Turn-ons per switch and second, mean of the six, hertz.
+    pub switching_hz: Option<f64>,
     /// Trip.
     pub tripped: Option<Trip>,
 }
@@ -225,14 +227,15 @@ impl Checked {
     fn line(&self, point: &Point) -> String {
         let head = format!("{:>6.0} rpm ", point.rpm);
         let demand = engineering(self.torque_nm, "Nm");
-        match (point.torque_pct, point.ripple_pp_pct, point.tripped) {
-            (_, _, Some(trip)) => format!("{head} trips: {trip}"),
-            (Some(torque), ripple, None) => format!(
-                "{head} {} % of {demand}, ripple {} % peak to peak",
+        match (point.torque_pct, point.tripped) {
+            (_, Some(trip)) => format!("{head} trips: {trip}"),
+            (Some(torque), None) => format!(
+                "{head} {} % of {demand}, ripple {} % peak to peak, switches at {} kHz",
                 significant(torque, 3),
-                ripple.map_or("-".to_owned(), |ripple| significant(ripple, 2)),
+                significant(point.ripple_pp_pct, 2),
+                significant(point.switching_hz.map(|hertz| 1e-3 * hertz), 3),
             ),
-            (None, _, None) => format!("{head} no torque"),
+            (None, None) => format!("{head} no torque"),
         }
     }
 }
@@ -252,6 +255,7 @@ fn at_speed(drive: &Prepared, omega_m: f64) -> Result<Point, Failure> {
         rpm: omega_m * 30.0 / std::f64::consts::PI,
         torque_pct: torque_pct.filter(|_| measured.tripped.is_none()),
         ripple_pp_pct: figures.ripple_pp_pct,
+        switching_hz: figures.switching_hz,
         tripped: measured.tripped,
     })
 }

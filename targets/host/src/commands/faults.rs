@@ -86,7 +86,7 @@ fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
     print_table(&table(study))?;
     print_text(&format!(
         "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
-         turning rotor.\nlargest: true phase current after the fault, over all runs; max_current is {} A, the trip level {} A.\n\
+         turning rotor.\nlargest: true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A.\n\
          torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip. The \
          shaft is held at its speed.\n",
         significant(study.max_current_a, 3),

@@ -67,7 +67,7 @@ fn the_table_says_what_trips_by_what_and_what_follows() {
         "| what breaks",
         "| current sensor a: stuck at the lowest count       | 8 of 8 | ADC range",
         "| nothing broken:",
-        "sound drives that trip: 0 of 11.",
+        "sound drives that trip: 0 of 13.",
         "Stall detection is off",
         "a comparator of the current on the timer's break input, a watchdog on the control interrupt",
     ] {

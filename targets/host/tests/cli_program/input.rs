@@ -174,7 +174,27 @@ fn options_out_of_range_or_at_odds_are_told() {
         ),
         (
             &["simulate", PAPER, "--rpm", "1", "--adc-offset", "1,2,3"],
-            "one current for both phases, or two",
+            "one value for both sensed phases, or two",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--scale-adc", "1,0"],
+            "out of range",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-noise", "1A"],
+            "is not a number of counts",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--adc-noise", "-1"],
+            "--adc-noise: plant: adc noise is -1, but must be from 0 to 4095 counts",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--conversion-time", "-1us"],
+            "--conversion-time: plant: adc instant is -1 us, but must be from 0 s",
+        ),
+        (
+            &["faults", PAPER, "--conversion-time", "30us"],
+            "--conversion-time: plant: adc instant is 30 us",
         ),
         (
             &["simulate", PAPER, "--rpm", "1", "--adc-offset", "41A"],

@@ -112,6 +112,23 @@ fn every_motor_of_the_library_is_checked() {
     }
 }
 
+#[test]
+fn check_tells_how_often_the_switches_turn_on() {
+    // At 20 kHz; a leg that reaches an end of the period does not switch in it.
+    for (variant, kilohertz) in [
+        ("pdcc:common_mode=centred", 19.0..20.1),
+        ("pdcc:common_mode=clamped_low", 12.7..13.4),
+    ] {
+        let arguments = ["check", PAPER, "--controller", variant];
+        let json = run(arguments.iter().chain(&["--json"])).json();
+        let slow = 1e-3 * number(&json["points"][0], "switching_hz");
+        assert!(kilohertz.contains(&slow), "{variant}: {slow} kHz");
+        let said = run(arguments);
+        let text = format!("switches at {slow:.1} kHz");
+        assert!(said.stdout.contains(&text), "{variant}: {said:?}");
+    }
+}
+
 /// Whether a comment is a field, and not a sentence.
 fn is_field(comment: &str) -> bool {
     let is_name = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '_');

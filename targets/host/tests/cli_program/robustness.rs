@@ -1,6 +1,7 @@
 //! `hexagen compare --robustness`: what is called what, the same plant as `simulate`, and colours only where wanted.
 
 use crate::support::{PAPER, hexagen, keys, number, run};
+use hexagen_lab::engine::MotorSource;
 use serde_json::Value;
 use std::process::Output;
 
@@ -64,6 +65,8 @@ fn the_sheet_tells_disturbed_loops_from_oscillating_ones() {
             "Hall +5, -5, 0 deg",
             "10-bit ADC, 200 mA off",
             "12-bit ADC, 200 mA off",
+            "current sensors 2 % apart",
+            "ADC noise 1 count rms",
         ]
     );
     assert_eq!(cells(&sheet).len(), 2 * names.len());
@@ -151,6 +154,14 @@ fn a_disturbed_plant_is_the_one_that_simulate_has() {
             "10-bit ADC, 200 mA off",
             &["--v-bus", "46", "--adc-bits", "10", "--adc-offset", "0.2A"],
         ),
+        (
+            "current sensors 2 % apart",
+            &["--v-bus", "46", "--scale-adc", "1.01,0.99"],
+        ),
+        (
+            "ADC noise 1 count rms",
+            &["--v-bus", "46", "--adc-noise", "1"],
+        ),
     ] {
         let simulated = ["simulate", PAPER, "--rpm", "1500", "--controller", HASTY];
         let rest = ["--start-angle", "0.1", "--json"];
@@ -164,6 +175,27 @@ fn a_disturbed_plant_is_the_one_that_simulate_has() {
                 "{name}, {key}: {of_sheet} {alone}"
             );
         }
+    }
+}
+
+/// On a board that converts one current after the other this is part of every plant; the sheet says what it costs.
+#[test]
+fn conversions_one_after_the_other_are_compared_with_both_at_once() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("one-adc.toml");
+    let motor = MotorSource::of_library(PAPER).expect("is in the library");
+    let sensing = "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\n\
+                   conversion_time = \"1 us\"\nmax_current";
+    let text = motor.text.replacen("max_current", sensing, 1);
+    std::fs::write(&path, text).expect("can be written");
+    let path = path.to_str().expect("a plain path");
+    let options = ["--controller", "pdcc", "--start-angle", "0.1", "--json"];
+    let sheet = run(["compare", path, "--robustness"].iter().chain(&options)).json();
+    for rpm in [400.0, 1500.0] {
+        let one_by_one = cell(&sheet, "none", rpm);
+        let at_once = cell(&sheet, "both currents at once", rpm);
+        assert_eq!(one_by_one["outcome"], "runs", "{one_by_one}");
+        assert_ne!(one_by_one["mean_torque_nm"], at_once["mean_torque_nm"]);
     }
 }
 

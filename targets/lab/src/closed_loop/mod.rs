@@ -3,6 +3,9 @@
 //! [`CurrentLoop`] is the interface of a controller: a compiled drive, an interpreted graph, the
 //! bit-true or the ideal model. Samples are taken at the start of each period; the command computed
 //! in period k takes effect in period k + 1, or, without delay, in period k.
+//!
+//! A sample's later conversions fall into the period that begins, whose command is already known.
+//! Without delay it is not: until they are done, the last command stands.
 
 mod allowance;
 mod figures_of_merit;
@@ -125,7 +128,8 @@ pub struct ClosedLoop<C> {
     plant: Plant,
     controller: C,
     delay: Delay,
-    pending: Legs,
+    /// The last command: with a delay that of the period that begins.
+    last: Legs,
     tripped: Option<Trip>,
 }
 
@@ -136,7 +140,7 @@ impl<C: CurrentLoop> ClosedLoop<C> {
             plant,
             controller,
             delay,
-            pending: Legs::OFF,
+            last: Legs::OFF,
             tripped: None,
         }
     }
@@ -169,7 +173,7 @@ impl<C: CurrentLoop> ClosedLoop<C> {
     /// Runs a number of control periods.
     pub fn run<R: Recorder>(&mut self, periods: usize, recorder: &mut R) {
         for _ in 0..periods {
-            let sample = self.plant.sample();
+            let sample = self.plant.sample(self.last);
             let truth = self.plant.truth();
             let command = self.controller.step(&sample, &truth);
             if self.tripped.is_none() {
@@ -179,9 +183,10 @@ impl<C: CurrentLoop> ClosedLoop<C> {
                     rpm: truth.omega_m * 60.0 / TAU,
                 });
             }
+            let previous = std::mem::replace(&mut self.last, command);
             let applied = match self.delay {
                 Delay::None => command,
-                Delay::OnePeriod => std::mem::replace(&mut self.pending, command),
+                Delay::OnePeriod => previous,
             };
             self.plant.run_period(applied, recorder);
             recorder.period(&Step {

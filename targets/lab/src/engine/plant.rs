@@ -2,13 +2,17 @@
 
 use crate::closed_loop::{Delay, RunOptions};
 use crate::plant::{AdcChannel, EmfShape, LowSide, PlantParams, Wiring};
-use hexagen_codegen::spec::{self, Spec};
+use hexagen_codegen::spec::{self, CurrentSensing, Spec};
 
 /// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
 /// time of the specification, ideal diodes, the shaft held at its speed.
 pub fn plant_of(spec: &Spec) -> PlantParams {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let sensors = inverter.sensors();
+    let times = match inverter.current_sensing {
+        CurrentSensing::InPhase => None,
+        CurrentSensing::LowSide(times) => Some(times),
+    };
     PlantParams {
         pole_pairs: motor.pole_pairs,
         resistance: [motor.resistance; 3],
@@ -28,24 +32,20 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
             bits: inverter.adc_bits,
             amperes_per_count: sensors[place].gain,
             offset: f64::from(sensors[place].offset),
+            noise: 0.0,
+            instant: times.map_or(0.0, |times| place as f64 * times.conversion - times.lead),
         }),
         sensed: [0, 1].map(|place| inverter.sensed_phases.phases()[place]),
-        low_side: low_side_of(inverter),
+        low_side: times.map(|times| LowSide {
+            settling: times.settling,
+            aperture: times.aperture,
+        }),
         hall_ticks_per_period: inverter.hall_capture.ticks_per_period(),
         hall_codes: motor.hall_codes,
         hall_error_deg: [0.0; 3],
         mechanics: None,
         wiring: Wiring::default(),
     }
-}
-
-/// The sensors' times, where they are in the low legs. The dead time goes by before the lower switch is on.
-fn low_side_of(inverter: &spec::InverterSpec) -> Option<LowSide> {
-    let window = inverter.window()?;
-    Some(LowSide {
-        settling: window.before - inverter.dead_time,
-        hold: window.after,
-    })
 }
 
 /// Largest torque in newton metres that a drive's set-point limit allows.

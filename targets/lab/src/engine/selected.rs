@@ -23,6 +23,12 @@ pub struct PlantOptions {
     pub adc_range: Option<String>,
     /// Zero error of the current ADCs in amperes, unknown to the controller.
     pub adc_offset: Option<[f64; 2]>,
+    /// True over stated current per ADC count, in the order of the sensed phases.
+    pub scale_adc: Option<[f64; 2]>,
+    /// Noise of the current ADCs in counts rms.
+    pub adc_noise: Option<f64>,
+    /// Time in seconds from the first current's sample to the second's.
+    pub conversion_time: Option<f64>,
     /// True bus voltage in volts.
     pub v_bus: Option<f64>,
     /// True over stated resistance.
@@ -186,6 +192,13 @@ impl PlantOptions {
             .zip(self.adc_offset.unwrap_or([0.0; 2]))
         {
             channel.offset += error / channel.amperes_per_count;
+        }
+        for (channel, scale) in plant.adc.iter_mut().zip(self.scale_adc.unwrap_or([1.0; 2])) {
+            channel.amperes_per_count *= scale;
+            channel.noise = self.adc_noise.unwrap_or(channel.noise);
+        }
+        if let Some(time) = self.conversion_time {
+            plant.adc[1].instant = plant.adc[0].instant + time;
         }
         plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
         plant.mechanics = self.inertia.map(|inertia| Mechanics {

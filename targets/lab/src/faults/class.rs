@@ -1,6 +1,7 @@
 //! The classes of faults of a drive, by the part that breaks.
 
 use super::defect::{CurrentDefect, Defect, PlantDefect, SignalDefect};
+use crate::plant::Short;
 use hexagen_codegen::spec::{BusSource, HallCapture, Spec};
 use serde::Serialize;
 
@@ -81,6 +82,9 @@ const DISPLACED: f64 = 15.0;
 
 /// Placement error of a sound drive's Hall sensors, electrical degrees.
 const PLACED: f64 = 5.0;
+
+/// True over stated current per ADC count of a sound drive's two channels.
+const APART: [f64; 2] = [1.01, 0.99];
 
 /// Dead time beyond what the specification of a sound drive states, second.
 const UNSTATED: f64 = 1e-6;
@@ -167,6 +171,14 @@ impl List {
                 self.plant(part, name, PlantDefect::DeadSwitch { leg, is_upper });
             }
         }
+        for [x, y] in [[0, 1], [1, 2], [2, 0]] {
+            let name = format!("phases {} and {} shorted", PHASES[x], PHASES[y]);
+            self.plant(part, name, PlantDefect::Short(Short::Legs([x, y])));
+        }
+        for (leg, phase) in PHASES.into_iter().enumerate() {
+            let name = format!("phase {phase} shorted to minus");
+            self.plant(part, name, PlantDefect::Short(Short::ToMinus(leg)));
+        }
         let name = "wires of phases a and b exchanged";
         self.plant(part, name, PlantDefect::WiresExchanged);
     }
@@ -245,6 +257,10 @@ impl List {
         self.add(part, "bus 15 % low", Defect::Bus { factor, is_told });
         let dead_time = PlantDefect::DeadTime { more: UNSTATED };
         self.plant(part, "1 us of dead time unstated", dead_time);
+        let apart = PlantDefect::AdcScale(APART);
+        self.plant(part, "current sensors 2 % apart", apart);
+        let noise = PlantDefect::AdcNoise { rms: 1.0 };
+        self.plant(part, "noise of 1 ADC count rms", noise);
         for (name, error_deg) in [
             ("Hall sensor Ha 5 deg off", [PLACED, 0.0, 0.0]),
             ("all Hall sensors 5 deg off", [PLACED; 3]),

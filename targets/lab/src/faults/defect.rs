@@ -1,7 +1,7 @@
 //! What may break: in the plant, in the signals that the drive reads, in the call of its control
 //! loop.
 
-use crate::plant::PlantParams;
+use crate::plant::{PlantParams, Short};
 
 /// What breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,8 @@ pub enum PlantDefect {
         /// Whether it is the upper one.
         is_upper: bool,
     },
+    /// A short circuit at the motor.
+    Short(Short),
     /// The wires of phases a and b change places, with the current that each leg carries.
     WiresExchanged,
     /// True over stated R, L and EMF constant.
@@ -61,6 +63,13 @@ pub enum PlantDefect {
     DeadTime {
         /// Second.
         more: f64,
+    },
+    /// True over stated current per ADC count of the two channels.
+    AdcScale([f64; 2]),
+    /// Noise of the current ADCs.
+    AdcNoise {
+        /// Counts rms.
+        rms: f64,
     },
     /// Displaced Hall sensors.
     Halls {
@@ -138,11 +147,22 @@ impl PlantDefect {
                 };
                 dead[leg] = true;
             }
+            Self::Short(short) => plant.wiring.short = Some(short),
             Self::WiresExchanged => plant.wiring.windings.swap(0, 1),
             Self::Motor([r, l, k_b]) => *plant = plant.clone().scaled(r, l, k_b),
             Self::DeadTime { more } => {
                 let most = MOST_DEAD_TIME * plant.pwm_period();
                 plant.dead_time = plant.dead_time.max((plant.dead_time + more).min(most));
+            }
+            Self::AdcScale(scales) => {
+                for (channel, scale) in plant.adc.iter_mut().zip(scales) {
+                    channel.amperes_per_count *= scale;
+                }
+            }
+            Self::AdcNoise { rms } => {
+                for channel in &mut plant.adc {
+                    channel.noise = rms;
+                }
             }
             Self::Halls { error_deg } => {
                 let known = plant.hall_error_deg;

@@ -41,7 +41,8 @@ pub struct FaultRow {
     /// Time from the fault to the sample that tripped the drive, millisecond: the median. Of a
     /// sound drive: from the start of control on a turning rotor. `None` without a trip.
     pub after_ms: Option<f64>,
-    /// Largest true phase current after the fault, ampere; of a sound drive after settling.
+    /// Largest true current of a phase, or with a short of a leg, after the fault, ampere; of a sound
+    /// drive after settling.
     pub largest_a: f64,
     /// The same over `max_current`.
     pub largest_over_max: f64,

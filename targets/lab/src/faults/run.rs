@@ -60,7 +60,7 @@ pub(super) struct Run {
     pub(super) tripped_before: bool,
     /// Trip after the fault, with the time since it; of a sound drive since its start.
     pub(super) trip: Option<Trip>,
-    /// Largest true phase current after the fault, ampere.
+    /// Largest true current of a phase or of a leg after the fault, ampere.
     pub(super) largest: f64,
     /// Mean torque after the fault, Nm.
     pub(super) torque: f64,
@@ -112,7 +112,7 @@ impl<'d> Bench<'d> {
         let set_point = options.set_point(drive, point.torque_nm);
         let controller = Watched {
             engine: drive.engine(self.model, set_point),
-            signals: Signals::new(&self.plant, place as u32),
+            signals: Signals::new(&self.plant, place as u64),
             bus: drive.bus_counts(self.plant.v_bus),
             lost: 0,
             last: Legs::OFF,
@@ -220,7 +220,7 @@ impl CurrentLoop for Watched<'_> {
 /// Current and torque after the fault.
 #[derive(Clone, Copy, Debug, Default)]
 struct After {
-    /// Largest phase current, ampere.
+    /// Largest current of a phase or of a leg, ampere.
     largest: f64,
     /// Sum of the periods' mean torques, Nm.
     torque: f64,
@@ -231,8 +231,9 @@ struct After {
 impl Observer for After {
     fn segment(&mut self, segment: &Segment) {
         // Between two events a current hardly turns back.
-        let ends = [0.0, segment.duration].map(|t| segment.currents_at(t));
-        let currents = ends.into_iter().flatten().map(f64::abs);
+        let ends = [0.0, segment.duration];
+        let ends = ends.map(|t| [segment.currents_at(t), segment.leg_currents_at(t)]);
+        let currents = ends.into_iter().flatten().flatten().map(f64::abs);
         self.largest = currents.fold(self.largest, f64::max);
     }
 }

@@ -23,12 +23,12 @@ pub(super) struct Signals {
     last: Sample,
     /// Ticks since the last change of the code that the drive sees.
     ticks: f64,
-    noise: Noise,
+    noise: fastrand::Rng,
 }
 
 impl Signals {
     /// Sound signals of a plant; `seed` distinguishes the noise of runs.
-    pub(super) fn new(plant: &PlantParams, seed: u32) -> Self {
+    pub(super) fn new(plant: &PlantParams, seed: u64) -> Self {
         let mut offsets = [0.0; 3];
         for (channel, phase) in plant.adc.iter().zip(plant.sensed) {
             offsets[phase] = channel.offset;
@@ -42,7 +42,7 @@ impl Signals {
             samples: 0,
             last: Sample::default(),
             ticks: 0.0,
-            noise: Noise::new(seed),
+            noise: fastrand::Rng::with_seed(seed),
         }
     }
 
@@ -83,7 +83,8 @@ impl Signals {
                     CurrentDefect::Gain(gain) => zero + gain * (count - zero),
                     CurrentDefect::Offset(share) => count + share * self.full_scale,
                     CurrentDefect::Noise(share) => {
-                        count + share * self.full_scale * self.noise.next()
+                        let uniform = 2.0 * self.noise.f64() - 1.0;
+                        count + share * self.full_scale * uniform
                     }
                 };
                 counts[phase] = shown.round().clamp(0.0, self.full_scale) as u16;
@@ -102,7 +103,7 @@ impl Signals {
                 if is_high { code | bit } else { code & !bit }
             }
             SignalDefect::HallsExchanged => code & 1 | (code & 2) << 1 | (code & 4) >> 1,
-            SignalDefect::HallFlips if is_disturbed => code ^ 1 << self.noise.below(3),
+            SignalDefect::HallFlips if is_disturbed => code ^ 1 << self.noise.u8(..3),
             SignalDefect::HallOpposite if is_disturbed => code ^ 0b111,
             _ => code,
         }
@@ -120,34 +121,6 @@ impl Signals {
             Some(_) => 0.5 * self.ticks_per_period,
         };
         self.ticks.min(f64::from(u16::MAX)) as u16
-    }
-}
-
-/// Repeatable noise: xorshift of 32 bits.
-#[derive(Clone, Debug)]
-struct Noise(u32);
-
-impl Noise {
-    fn new(seed: u32) -> Self {
-        // Zero is the one state without a successor; few bits take long to spread.
-        Self((seed + 1).wrapping_mul(0x9e37_79b9) | 1)
-    }
-
-    fn word(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
-    }
-
-    /// Uniform in -1 to 1.
-    fn next(&mut self) -> f64 {
-        f64::from(self.word()) / f64::from(u32::MAX) * 2.0 - 1.0
-    }
-
-    /// A whole number from 0 to below `end`.
-    fn below(&mut self, end: u32) -> u32 {
-        self.word() % end
     }
 }
 
@@ -189,10 +162,16 @@ mod tests {
 
     #[test]
     fn noise_stays_within_its_amplitude_and_uses_it() {
-        let mut noise = Noise::new(3);
-        let values: Vec<f64> = (0..1000).map(|_| noise.next()).collect();
-        assert!(values.iter().all(|x| x.abs() <= 1.0));
-        assert!(values.iter().any(|x| *x > 0.9) && values.iter().any(|x| *x < -0.9));
+        let mut signals = signals();
+        let defect = CurrentDefect::Noise(0.05);
+        signals.break_down(SignalDefect::Current { phase: 0, defect });
+        let amplitude = 0.05 * 4095.0;
+        let errors: Vec<f64> = (0..1000)
+            .map(|_| f64::from(signals.read(&sample(1, 0)).adc()[0]) - 2148.0)
+            .collect();
+        assert!(errors.iter().all(|x| x.abs() <= amplitude + 0.5));
+        let far = 0.9 * amplitude;
+        assert!(errors.iter().any(|x| *x > far) && errors.iter().any(|x| *x < -far));
     }
 
     #[test]

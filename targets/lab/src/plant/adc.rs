@@ -1,8 +1,9 @@
-//! The current ADCs: rounding, offset, sign and saturation.
+//! The current ADCs: rounding, offset, sign, noise and saturation.
 
 use super::gates::Gate;
 use super::{AdcChannel, LowSide};
 use hexagen::{LegState, Legs};
+use std::f64::consts::TAU;
 
 /// The largest count of an ADC with `bits` bits.
 pub(super) fn full_scale(bits: u32) -> f64 {
@@ -10,35 +11,42 @@ pub(super) fn full_scale(bits: u32) -> f64 {
 }
 
 /// Count of a channel at a current in amperes; clamped to the ADC's range.
-pub(super) fn convert(channel: &AdcChannel, current: f64) -> u16 {
-    let count = (current / channel.amperes_per_count + channel.offset).round();
-    count.clamp(0.0, full_scale(channel.bits)) as u16
+pub(super) fn convert(channel: &AdcChannel, current: f64, random: &mut fastrand::Rng) -> u16 {
+    let mut count = current / channel.amperes_per_count + channel.offset;
+    if channel.noise > 0.0 {
+        count += channel.noise * gaussian(random);
+    }
+    count.round().clamp(0.0, full_scale(channel.bits)) as u16
+}
+
+/// A Gaussian random number of variance 1, by the method of Box and Muller.
+fn gaussian(random: &mut fastrand::Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - random.f64()).ln()).sqrt();
+    radius * (TAU * random.f64()).cos()
 }
 
 /// Slack for the rounding of times, second.
 const ROUNDING: f64 = 1e-12;
 
-/// What a sensor sees of its phase's current at the start of a period; `held_for`: how long the leg has been as it is. A
-/// sensor in a low leg sees nothing of what flows through the upper switch or diode, or before it has settled.
-pub(super) fn seen(low_side: Option<LowSide>, gate: Gate, held_for: f64, current: f64) -> f64 {
-    let Some(LowSide { settling, .. }) = low_side else {
-        return current;
-    };
+/// What a sensor sees of its phase's current; `held_for`: how long the leg has been as it is. A
+/// sensor in a low leg sees nothing of what flows through the upper switch or diode, or before it
+/// has settled.
+pub(super) fn seen(low_side: LowSide, gate: Gate, held_for: f64, current: f64) -> f64 {
     match gate {
-        Gate::Lower if held_for >= settling - ROUNDING => current,
+        Gate::Lower if held_for >= low_side.settling - ROUNDING => current,
         // The lower diode conducts what flows into the motor.
         Gate::Off => current.max(0.0),
         Gate::Lower | Gate::Upper => 0.0,
     }
 }
 
-/// Whether a leg's lower switch stays on for long enough behind the start of a period with this command.
+/// Whether a leg's lower switch stays on for `time` seconds behind the start of a period with this
+/// command.
 pub(super) fn is_held(
-    low_side: LowSide,
+    time: f64,
     command: Legs,
     leg: usize,
-    timer_period: u16,
-    pwm_period: f64,
+    (timer_period, pwm_period): (u16, f64),
 ) -> bool {
     let duty = match command.state()[leg] {
         LegState::Pulsed => {
@@ -46,7 +54,7 @@ pub(super) fn is_held(
         }
         LegState::Low | LegState::Off => 0.0,
     };
-    0.5 * pwm_period * (1.0 - duty) >= low_side.hold - ROUNDING
+    0.5 * pwm_period * (1.0 - duty) >= time - ROUNDING
 }
 
 #[cfg(test)]
@@ -55,10 +63,12 @@ mod tests {
 
     #[test]
     fn rounds_offsets_inverts_and_saturates() {
+        let convert = |channel: &AdcChannel, current: f64| {
+            super::convert(channel, current, &mut fastrand::Rng::with_seed(0))
+        };
         let channel = AdcChannel {
-            bits: 12,
             amperes_per_count: 0.02,
-            offset: 2048.0,
+            ..AdcChannel::bipolar(12, 40.0)
         };
         assert_eq!(convert(&channel, 0.0), 2048);
         assert_eq!(convert(&channel, 0.0099), 2048);
@@ -73,5 +83,25 @@ mod tests {
         assert_eq!(convert(&inverting, 1.0), 1998);
         assert_eq!(convert(&AdcChannel::bipolar(12, 40.0), 40.0), 4095);
         assert_eq!(convert(&AdcChannel::bipolar(16, 40.0), -40.0), 0);
+    }
+
+    #[test]
+    fn noise_has_the_stated_rms_and_no_mean() {
+        let channel = AdcChannel {
+            noise: 3.0,
+            ..AdcChannel::bipolar(12, 40.0)
+        };
+        let mut random = fastrand::Rng::with_seed(1);
+        let errors: Vec<f64> = (0..20_000)
+            .map(|_| f64::from(convert(&channel, 0.0, &mut random)) - 2048.0)
+            .collect();
+        let mean = errors.iter().sum::<f64>() / 20_000.0;
+        let rms = (errors.iter().map(|x| x * x).sum::<f64>() / 20_000.0).sqrt();
+        assert!(mean.abs() < 0.1, "{mean}");
+        // Rounding adds a twelfth of a count to the variance of 9.
+        assert!((rms - 3.014).abs() < 0.05, "{rms}");
+        // A Gaussian, not a uniform or a triangular one: it passes three times its rms.
+        let far = errors.iter().filter(|x| x.abs() > 9.5).count();
+        assert!((15..60).contains(&far), "{far} of 20000");
     }
 }

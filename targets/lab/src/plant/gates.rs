@@ -144,9 +144,9 @@ impl Gates {
         upcoming
     }
 
-    /// How long each leg has been as it is, at the start of a period.
-    pub(super) fn held_for(&self) -> [f64; 3] {
-        self.legs.map(|leg| -leg.changed)
+    /// How long each leg has been as it is, `t` seconds into the period.
+    pub(super) fn held_for(&self, t: f64) -> [f64; 3] {
+        self.legs.map(|leg| t - leg.changed)
     }
 
     /// What conducts in each leg: of a switch that is dead, nothing.

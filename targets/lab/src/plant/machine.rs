@@ -1,9 +1,10 @@
 //! The plant as a whole: state, one control period at a time, samples and truth.
 
-use super::gates::Gates;
+use super::gates::{Gate, Gates};
 use super::hall::Sensors;
 use super::network::{Network, balance, set_shape};
 use super::segment::{Segment, Series, TERMS, integral};
+use super::short::{Detour, tied};
 use super::{EmfShape, Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
 use hexagen::{Legs, Sample};
 
@@ -13,6 +14,9 @@ const MECHANICAL_STEPS: f64 = 20.0;
 /// Segments in a period beyond which events are resolved to a thousandth of it only, so that a
 /// period always ends. No known circuit comes near.
 const MAX_SEGMENTS: u32 = 1000;
+
+/// Start of the ADCs' noise: it is the same in every run.
+const NOISE_SEED: u64 = 1;
 
 /// The plant's true state at a sampling instant, for ideal controllers and for records.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +79,38 @@ pub struct Plant {
     currents: [f64; 3],
     mean_voltages: [f64; 3],
     mean_torque: f64,
+    /// The sensed legs at those channels' instants that come before the next period.
+    early: [LegNow; 2],
+    noise: fastrand::Rng,
     blind: u64,
+}
+
+/// A leg at an instant.
+#[derive(Clone, Copy, Debug, Default)]
+struct LegNow {
+    /// Current in amperes.
+    current: f64,
+    gate: Gate,
+    /// How long the gate has been as it is, second.
+    held_for: f64,
+}
+
+/// Integrals over a part of a period.
+#[derive(Clone, Copy, Debug, Default)]
+struct Integrals {
+    /// Of the terminal voltages, volt-seconds.
+    volt_seconds: [f64; 3],
+    /// Of the torque, newton metre seconds.
+    impulse: f64,
+}
+
+impl Integrals {
+    fn add(&mut self, impulse: f64, volt_seconds: [f64; 3]) {
+        self.impulse += impulse;
+        for (sum, part) in self.volt_seconds.iter_mut().zip(volt_seconds) {
+            *sum += part;
+        }
+    }
 }
 
 impl Plant {
@@ -97,6 +132,8 @@ impl Plant {
             currents: [0.0; 3],
             mean_voltages: [0.0; 3],
             mean_torque: 0.0,
+            early: [LegNow::default(); 2],
+            noise: fastrand::Rng::with_seed(NOISE_SEED),
             blind: 0,
             params,
         })
@@ -167,13 +204,16 @@ impl Plant {
         }
     }
 
-    /// The controller's sample now.
-    pub fn sample(&self) -> Sample {
+    /// The controller's sample of the period that begins. `next` is that period's command: a channel
+    /// that is sampled later than the first sees the currents under it.
+    pub fn sample(&mut self, next: Legs) -> Sample {
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
         let mut counts = [0; 3];
-        for (channel, phase) in self.params.adc.iter().zip(self.params.sensed) {
-            counts[phase] = adc::convert(channel, self.seen(phase));
+        for place in 0..2 {
+            let current = self.read(place, next);
+            let channel = &self.params.adc[place];
+            counts[self.params.sensed[place]] = adc::convert(channel, current, &mut self.noise);
         }
         let [adc_a, adc_b, adc_c] = counts;
         Sample::with_hall([adc_a, adc_b], self.sensors.code(self.theta_e))
@@ -181,10 +221,40 @@ impl Plant {
             .hall_ticks(ticks.clamp(0.0, f64::from(u16::MAX)) as u16)
     }
 
-    /// What the sensor of a phase sees of its current now.
-    fn seen(&self, phase: usize) -> f64 {
-        let (gate, held_for) = (self.gates.state()[phase], self.gates.held_for()[phase]);
-        adc::seen(self.params.low_side, gate, held_for, self.currents[phase])
+    /// What a channel's sensor shows of its phase's current; counts a sample that is none of the
+    /// current, or that the next command cuts short.
+    fn read(&mut self, place: usize, next: Legs) -> f64 {
+        let (instant, phase) = (self.params.adc[place].instant, self.params.sensed[place]);
+        let leg = if instant < 0.0 {
+            self.early[place]
+        } else if instant > 0.0 {
+            let mut later = self.clone();
+            later.begin(next);
+            later.advance((0.0, instant), &mut Integrals::default(), &mut ());
+            later.leg(phase, instant)
+        } else {
+            self.leg(phase, 0.0)
+        };
+        let Some(low_side) = self.params.low_side else {
+            return leg.current;
+        };
+        let seen = adc::seen(low_side, leg.gate, leg.held_for, leg.current);
+        let until = instant + low_side.aperture;
+        let timing = (self.params.timer_period, self.params.pwm_period());
+        let is_held = adc::is_held(until, next, phase, timing);
+        self.blind += u64::from(seen != leg.current || !is_held);
+        seen
+    }
+
+    /// A leg `t` seconds into the period.
+    fn leg(&self, leg: usize, t: f64) -> LegNow {
+        let gates = self.gates.state();
+        let detour = Detour::of(self.params.wiring.short, gates, self.params.v_bus);
+        LegNow {
+            current: detour.legs(self.currents)[leg],
+            gate: gates[leg],
+            held_for: self.gates.held_for(t)[leg],
+        }
     }
 
     /// Samples so far, each sensor's by itself, that did not show the current, or that the next command cut short.
@@ -192,39 +262,47 @@ impl Plant {
         self.blind
     }
 
-    /// Counts the sensors whose sample at the start of a period with this command is none of the current.
-    fn count_blind(&mut self, command: Legs) {
-        let PlantParams {
-            low_side: Some(low_side),
-            timer_period,
-            ..
-        } = self.params
-        else {
-            return;
-        };
-        let pwm_period = self.params.pwm_period();
-        let is_blind = |phase: &&usize| {
-            self.seen(**phase) != self.currents[**phase]
-                || !adc::is_held(low_side, command, **phase, timer_period, pwm_period)
-        };
-        self.blind += self.params.sensed.iter().filter(is_blind).count() as u64;
-    }
-
     /// Runs one control period under a command.
     pub fn run_period(&mut self, command: Legs, observer: &mut dyn Observer) {
         let t_s = self.params.t_s;
-        let mut volt_seconds = [0.0; 3];
-        let mut impulse = 0.0;
-        let mut torque: Series = [0.0; TERMS];
-        let mut segments = 0;
+        let mut integrals = Integrals::default();
         let mut t = 0.0;
-        self.count_blind(command);
+        self.begin(command);
+        for place in 0..2 {
+            let instant = t_s + self.params.adc[place].instant;
+            if instant < t_s {
+                self.advance((t, instant), &mut integrals, observer);
+                self.early[place] = self.leg(self.params.sensed[place], instant);
+                t = instant;
+            }
+        }
+        self.advance((t, t_s), &mut integrals, observer);
+        self.gates.end(t_s);
+        self.period += 1;
+        self.mean_voltages = integrals.volt_seconds.map(|sum| sum / t_s);
+        self.mean_torque = integrals.impulse / t_s;
+    }
+
+    /// Begins a period with a command.
+    fn begin(&mut self, command: Legs) {
         let pulses = (self.params.pwm_period(), self.params.pwm_per_control);
         self.gates.begin(command, self.params.timer_period, pulses);
-        while t < t_s {
-            let until = self.gates.advance_to(t).min(t_s);
+    }
+
+    /// Runs a part of a period; its ends in seconds from the period's start.
+    fn advance(
+        &mut self,
+        (mut t, end): (f64, f64),
+        integrals: &mut Integrals,
+        observer: &mut dyn Observer,
+    ) {
+        let t_s = self.params.t_s;
+        let mut torque: Series = [0.0; TERMS];
+        let mut segments = 0;
+        while t < end {
+            let until = self.gates.advance_to(t).min(end);
             self.prepare_segment(t, until);
-            let gates = self.network.reached(self.gates.state());
+            let gates = self.connect();
             let planned = self.segment.duration;
             let zero_leg = self
                 .network
@@ -237,30 +315,41 @@ impl Plant {
             observer.segment(&self.segment);
 
             self.segment.torque(&mut torque);
-            let segment_impulse = integral(&torque[..self.segment.terms], h);
-            impulse += segment_impulse;
-            for (sum, part) in volt_seconds.iter_mut().zip(self.segment.volt_seconds()) {
-                *sum += part;
-            }
+            let impulse = integral(&torque[..self.segment.terms], h);
+            integrals.add(impulse, self.segment.volt_seconds());
             self.currents = self.segment.currents_at(h);
             if let Some(leg) = zero_leg {
                 self.currents[leg] = 0.0;
             }
             balance(&mut self.currents, gates);
-            let theta_end = self.theta_e + self.segment.omega_e * h;
-            self.sensors
-                .sweep(self.theta_e, theta_end, self.segment.start, h);
-            self.theta_e = wrap(theta_end);
-            if let Some(mechanics) = self.params.mechanics {
-                self.omega_m = speed_after(&mechanics, self.omega_m, segment_impulse, h);
-            }
+            self.turn(impulse);
             let whole = h >= planned && t + planned >= until - 1e-9 * t_s;
             t = if whole { until } else { t + h };
         }
-        self.gates.end(t_s);
-        self.period += 1;
-        self.mean_voltages = volt_seconds.map(|sum| sum / t_s);
-        self.mean_torque = impulse / t_s;
+    }
+
+    /// What the gates connect to the windings, for the next segment.
+    fn connect(&mut self) -> [Gate; 3] {
+        let gates = self.network.reached(self.gates.state());
+        let short = self.params.wiring.short;
+        self.segment.detour = Detour::of(short, gates, self.params.v_bus);
+        let emf = self
+            .segment
+            .shape
+            .map(|series| self.segment.omega_m * series[0]);
+        tied(short, gates, self.currents, emf)
+    }
+
+    /// Turns the rotor by the segment that ends, with the impulse (N m s) of the motor's torque.
+    fn turn(&mut self, impulse: f64) {
+        let h = self.segment.duration;
+        let theta_end = self.theta_e + self.segment.omega_e * h;
+        self.sensors
+            .sweep(self.theta_e, theta_end, self.segment.start, h);
+        self.theta_e = wrap(theta_end);
+        if let Some(mechanics) = self.params.mechanics {
+            self.omega_m = speed_after(&mechanics, self.omega_m, impulse, h);
+        }
     }
 
     /// Fills times, speed and EMF of the next segment, `t` seconds into the period and at most up

@@ -7,6 +7,7 @@
 //! Units are SI throughout; angles are electrical radians unless a name says otherwise.
 
 mod adc;
+mod check;
 mod emf;
 mod energy;
 mod gates;
@@ -16,6 +17,7 @@ mod network;
 mod params;
 mod roots;
 mod segment;
+mod short;
 
 pub use energy::{EnergyBalance, EnergyMeter};
 pub use gates::{Gate, Gates};
@@ -25,6 +27,7 @@ pub use params::{
 };
 pub(crate) use segment::integral;
 pub use segment::{Segment, Series, TERMS, Terminal};
+pub use short::{SHORT_RESISTANCE, Short};
 
 use std::f64::consts::{FRAC_PI_3, TAU};
 

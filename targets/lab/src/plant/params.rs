@@ -1,6 +1,6 @@
 //! Parameters of the plant in SI units, and their check.
 
-use super::adc::full_scale;
+use super::Short;
 use hexagen_codegen::diagnostics::engineering;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,8 @@ pub enum EmfShape {
     Sinusoidal,
 }
 
-/// One current channel: `count = round(i / amperes_per_count) + offset`, limited to the range.
+/// One current channel: `count = round(i / amperes_per_count + offset + noise)`, limited to the
+/// range.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AdcChannel {
     /// Resolution in bits, 1 to 16.
@@ -28,6 +29,14 @@ pub struct AdcChannel {
     pub amperes_per_count: f64,
     /// Count at zero current; need not be whole.
     pub offset: f64,
+    /// Standard deviation of Gaussian noise in counts, independent from sample to sample.
+    #[serde(default)]
+    pub noise: f64,
+    /// Time in seconds from the start of a control period to the instant at which the channel is
+    /// sampled for it; negative is before it. An ADC that converts one channel after the other
+    /// samples the second one later.
+    #[serde(default)]
+    pub instant: f64,
 }
 
 impl AdcChannel {
@@ -39,6 +48,8 @@ impl AdcChannel {
             bits,
             amperes_per_count: range / half,
             offset: half,
+            noise: 0.0,
+            instant: 0.0,
         }
     }
 }
@@ -49,7 +60,7 @@ pub struct LowSide {
     /// Time in seconds for which the lower switch must have been on before a sample.
     pub settling: f64,
     /// Time in seconds for which it must stay on after a sample.
-    pub hold: f64,
+    pub aperture: f64,
 }
 
 /// Wires and switches between inverter and motor, with what is broken of them. Arrays are per leg.
@@ -63,6 +74,9 @@ pub struct Wiring {
     pub upper_dead: [bool; 3],
     /// Whether the lower switch never turns on; its diode conducts.
     pub lower_dead: [bool; 3],
+    /// A short circuit at the motor; no wire that it ties may be open.
+    #[serde(default)]
+    pub short: Option<Short>,
 }
 
 impl Default for Wiring {
@@ -72,6 +86,7 @@ impl Default for Wiring {
             open: [false; 3],
             upper_dead: [false; 3],
             lower_dead: [false; 3],
+            short: None,
         }
     }
 }
@@ -210,195 +225,5 @@ impl PlantParams {
         self.inductance = self.inductance.map(|x| x * l);
         self.k_phase = self.k_phase.map(|x| x * k_b);
         self
-    }
-
-    /// Checks every field against the range its documentation states.
-    ///
-    /// # Errors
-    /// The first field outside its range.
-    pub fn check(&self) -> Result<(), PlantError> {
-        let positive = |x: f64| x.is_finite() && x > 0.0;
-        let not_negative = |x: f64| x.is_finite() && x >= 0.0;
-        let require = |ok: bool, name, (value, unit), limit: &str| {
-            if ok {
-                Ok(())
-            } else {
-                Err(PlantError::Range {
-                    name,
-                    value,
-                    unit,
-                    limit: limit.to_owned(),
-                })
-            }
-        };
-        let pole_pairs = f64::from(self.pole_pairs);
-        require(
-            self.pole_pairs > 0,
-            "pole_pairs",
-            (pole_pairs, ""),
-            "at least 1",
-        )?;
-        for phase in 0..3 {
-            let (r, l, k) = (
-                self.resistance[phase],
-                self.inductance[phase],
-                self.k_phase[phase],
-            );
-            require(
-                not_negative(r),
-                "resistance",
-                (r, "ohm"),
-                "finite and not negative",
-            )?;
-            require(positive(l), "inductance", (l, "H"), "finite and positive")?;
-            require(
-                not_negative(k),
-                "k_phase",
-                (k, "V s/rad"),
-                "finite and not negative",
-            )?;
-            let error = self.hall_error_deg[phase];
-            require(
-                error.abs() < 30.0,
-                "hall_error_deg",
-                (error, "deg"),
-                "within -30 to 30 degrees",
-            )?;
-        }
-        if let EmfShape::Trapezoidal { flat_top_deg } = self.shape {
-            let in_range = (0.0..=179.0).contains(&flat_top_deg);
-            require(
-                in_range,
-                "flat_top_deg",
-                (flat_top_deg, "deg"),
-                "0 to 179 degrees",
-            )?;
-        }
-        require(
-            positive(self.v_bus),
-            "v_bus",
-            (self.v_bus, "V"),
-            "finite and positive",
-        )?;
-        require(
-            positive(self.t_s),
-            "t_s",
-            (self.t_s, "s"),
-            "finite and positive",
-        )?;
-        let period = f64::from(self.timer_period);
-        require(
-            self.timer_period > 0,
-            "timer_period",
-            (period, ""),
-            "at least 1",
-        )?;
-        require(
-            self.pwm_per_control > 0,
-            "pwm_per_control",
-            (0.0, ""),
-            "at least 1",
-        )?;
-        let pwm_period = self.pwm_period();
-        let dead_ok = (0.0..pwm_period / 2.0).contains(&self.dead_time);
-        require(
-            dead_ok,
-            "dead_time",
-            (self.dead_time, "s"),
-            &format!(
-                "from 0 to below half the period of {}",
-                engineering(pwm_period, "s")
-            ),
-        )?;
-        let drop = self.diode_drop;
-        require(
-            not_negative(drop),
-            "diode_drop",
-            (drop, "V"),
-            "finite and not negative",
-        )?;
-        for channel in self.adc {
-            let bits = f64::from(channel.bits);
-            require(
-                (1..=16).contains(&channel.bits),
-                "adc bits",
-                (bits, ""),
-                "1 to 16",
-            )?;
-            let gain = channel.amperes_per_count;
-            require(
-                positive(gain.abs()),
-                "adc amperes_per_count",
-                (gain, "A"),
-                "finite and not zero",
-            )?;
-            let in_range = (0.0..=full_scale(channel.bits)).contains(&channel.offset);
-            require(
-                in_range,
-                "adc offset",
-                (channel.offset, ""),
-                &format!("from 0 to {} counts", full_scale(channel.bits)),
-            )?;
-        }
-        let [first, second] = self.sensed;
-        require(
-            first < 3 && second < 3 && first != second,
-            "sensed",
-            (second as f64, ""),
-            "two different phases, 0 to 2",
-        )?;
-        let mut windings = self.wiring.windings;
-        windings.sort_unstable();
-        let stray = windings.iter().zip(0..).find(|&(&at, place)| at != place);
-        require(
-            stray.is_none(),
-            "windings",
-            (stray.map_or(0.0, |(&at, _)| at as f64), ""),
-            "0, 1 and 2 in any order",
-        )?;
-        let ticks = self.hall_ticks_per_period;
-        require(
-            positive(ticks),
-            "hall_ticks_per_period",
-            (ticks, ""),
-            "finite and positive",
-        )?;
-        for code in self.hall_codes {
-            require(
-                (0..=7).contains(&code),
-                "hall code",
-                (f64::from(code), ""),
-                "0 to 7",
-            )?;
-        }
-        if let Some(m) = self.mechanics {
-            require(
-                positive(m.inertia),
-                "inertia",
-                (m.inertia, "kg m2"),
-                "finite and positive",
-            )?;
-            let opposing = m.opposing_torque;
-            require(
-                not_negative(opposing),
-                "opposing_torque",
-                (opposing, "Nm"),
-                "not negative",
-            )?;
-            let external = m.external_torque;
-            require(
-                external.is_finite(),
-                "external_torque",
-                (external, "Nm"),
-                "finite",
-            )?;
-            require(
-                not_negative(m.viscous),
-                "viscous",
-                (m.viscous, "Nm s/rad"),
-                "not negative",
-            )?;
-        }
-        Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! A time interval between two events, with the exact solution on it.
 
 use super::roots::evaluate;
+use super::short::Detour;
 
 /// Coefficients kept of each Taylor series.
 pub const TERMS: usize = 16;
@@ -47,6 +48,8 @@ pub struct Segment {
     pub neutral: Series,
     /// Connections of the three terminals.
     pub terminal: [Terminal; 3],
+    /// How a short changes the legs' currents.
+    pub(super) detour: Detour,
     /// Electrical angle at the start in radians.
     pub theta_e: f64,
     /// Electrical speed in rad/s, constant over the segment.
@@ -67,6 +70,7 @@ impl Default for Segment {
             shape_terms: 1,
             neutral: [0.0; TERMS],
             terminal: [Terminal::Floating; 3],
+            detour: Detour::None,
             theta_e: 0.0,
             omega_e: 0.0,
             omega_m: 0.0,
@@ -84,6 +88,12 @@ impl Segment {
             sums = [sums[0] * t + a, sums[1] * t + b, sums[2] * t + c];
         }
         sums
+    }
+
+    /// Currents in amperes of the inverter's legs at `t` seconds after the start: the phases', and
+    /// that of a short.
+    pub fn leg_currents_at(&self, t: f64) -> [f64; 3] {
+        self.detour.legs(self.currents_at(t))
     }
 
     /// Terminal voltages in volts against the negative rail at `t` seconds after the start.

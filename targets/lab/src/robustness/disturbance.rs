@@ -2,7 +2,7 @@
 
 use crate::engine::PlantOptions;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::InverterSpec;
+use hexagen_codegen::spec::{CurrentSensing, InverterSpec};
 
 /// A plant option.
 type Scale = fn(&mut PlantOptions) -> &mut Option<f64>;
@@ -29,6 +29,12 @@ const ADC_BITS: [u32; 2] = [10, 12];
 
 /// Zero error of the ADCs, the same for both, relative to the largest current.
 const ADC_OFFSET: f64 = 0.005;
+
+/// True over stated current per ADC count of the two channels.
+const ADC_SCALE: [f64; 2] = [1.01, 0.99];
+
+/// Noise of the current ADCs in counts rms.
+const ADC_NOISE: f64 = 1.0;
 
 /// One disturbance.
 #[derive(Clone, Debug)]
@@ -84,5 +90,25 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
             plant.adc_offset = Some(known.map(|known| known + offset));
         });
     }
+    add("current sensors 2 % apart", &|plant| {
+        let known = plant.scale_adc.unwrap_or([1.0; 2]);
+        plant.scale_adc = Some(std::array::from_fn(|x| known[x] * ADC_SCALE[x]));
+    });
+    add("ADC noise 1 count rms", &|plant| {
+        plant.adc_noise = Some(plant.adc_noise.unwrap_or(0.0).hypot(ADC_NOISE));
+    });
+    if has_one_adc(inverter) && undisturbed.conversion_time.is_none() {
+        add("both currents at once", &|plant| {
+            plant.conversion_time = Some(0.0);
+        });
+    }
     all
+}
+
+/// Whether the board states that its currents are converted one after the other.
+fn has_one_adc(inverter: &InverterSpec) -> bool {
+    match inverter.current_sensing {
+        CurrentSensing::InPhase => false,
+        CurrentSensing::LowSide(times) => times.conversion > 0.0,
+    }
 }

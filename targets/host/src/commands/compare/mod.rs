@@ -25,8 +25,9 @@ pub struct Options {
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]", requires = "motor")]
     pub controller: Option<Selection>,
     /// Run controllers on disturbed plants instead: R, L, k_b +-30 %, bus -10 %, dead time 0 to 2 us,
-    /// Hall sensors +-5 degrees off, 10- and 12-bit ADCs with offset. The plant options apply to all
-    /// of these plants
+    /// Hall sensors +-5 degrees off, 10- and 12-bit ADCs with offset, current sensors 2 % apart or with
+    /// noise, and, where the board converts one current after the other, both at once. The plant
+    /// options apply to all of these plants
     #[arg(long, requires = "motor")]
     pub robustness: bool,
     /// Write the table of --robustness, one row per controller, disturbance and speed

@@ -52,8 +52,8 @@ fn met(data: &Results) -> Option<String> {
     ))
 }
 
-/// One row per variant, best first: its fixed-point code, and how far the ideal model and sampled
-/// edges differ from it.
+/// One row per variant, best first: its fixed-point code, how often each of its switches turns on at
+/// the highest speed, and how far the ideal model and sampled edges differ from it.
 pub fn variants_table(data: &Results) -> Table {
     let unit = TorqueScale::of(data.torque).unit;
     let mut columns = vec![Column::text("Variant")];
@@ -63,6 +63,7 @@ pub fn variants_table(data: &Results) -> Table {
         columns.extend(figures.map(|(name, unit)| Column::number(name, unit).of(group.clone())));
     }
     columns.push(Column::number("Limit", "%"));
+    columns.push(Column::number("Switching", "kHz"));
     columns.push(Column::number("Ideal", "% pp more"));
     columns.push(Column::number("Sampled", "% pp more"));
     let mut table = Table::new("variants", columns);
@@ -109,6 +110,8 @@ fn variant_row(data: &Results, variant: &Variant) -> Vec<Cell> {
         }
     }
     cells.push(limit_cell(fixed));
+    let switching = fixed.points.last().and_then(|top| top.figures.switching_hz);
+    cells.push(number(switching.map(|hertz| 1e-3 * hertz), 1).into());
     let more = |model: Model, capture| {
         let run = variant
             .runs
