@@ -9,11 +9,7 @@ pub const MUTATED: &[Drive] = &[
     Drive {
         kind: "pdcc",
         motor: "trivedi-keshri-660w",
-        settings: &[
-            ("reference", "quasi_square"),
-            ("saturation", "torque_priority"),
-            ("hall_capture", "timer"),
-        ],
+        settings: &[("saturation", "torque_priority"), ("hall_capture", "timer")],
     },
     Drive {
         kind: "pdcc",
@@ -50,11 +46,7 @@ pub const MUTATED: &[Drive] = &[
     Drive {
         kind: "pi-pwm",
         motor: "velineon-3500",
-        settings: &[
-            ("reference", "quasi_square"),
-            ("saturation", "nearest"),
-            ("word", "16"),
-        ],
+        settings: &[("saturation", "nearest"), ("word", "16")],
     },
 ];
 

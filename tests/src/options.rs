@@ -100,10 +100,31 @@ const OWN: &[Row] = &[
 /// Options of all kinds, besides those of the table.
 const SHARED: &[Row] = &[
     (
+        "reference",
+        &[
+            (
+                "quasi_square",
+                &[("controller", "reference", "\"quasi_square\"")],
+            ),
+            (
+                "proportional",
+                &[("controller", "reference", "\"proportional\"")],
+            ),
+        ],
+    ),
+    (
+        "hall_capture",
+        &[
+            ("sampled", &[("controller", "hall_capture", "\"sampled\"")]),
+            ("timer", &[("controller", "hall_capture", "\"timer\"")]),
+        ],
+    ),
+    (
         "emf",
         &[
             // Not stated: it has no effect on a PI loop without feed-forward.
-            ("estimated", &[]),
+            ("by_default", &[]),
+            ("estimated", &[("controller", "emf", "\"estimated\"")]),
             ("unfiltered", &[("controller", "emf_filter", "1")]),
             ("model", &[("controller", "emf", "\"model\"")]),
             ("held", &[("controller", "emf", "\"held\"")]),

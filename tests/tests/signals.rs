@@ -18,12 +18,12 @@ macro_rules! drives {
 }
 
 drives! {
-    Estimated: { pdcc {} }
+    Estimated: { pdcc { reference: quasi_square } }
     Modelled: { pdcc { emf: model, advance: 1.5 } }
     Timed: { fcs_mpc { hall_capture: timer, emf: model } }
     Fed: { pi_pwm { feed_forward: on, emf: model } }
     Regulated: { pdcc { speed_loop: on } }
-    Held: { pdcc { emf: held } }
+    Held: { pdcc { reference: quasi_square, emf: held } }
     Hysteretic: { phcc { delay: 0 } }
 }
 

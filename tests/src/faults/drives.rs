@@ -11,10 +11,7 @@ pub const DRIVES: &[Drive] = &[
     Drive {
         kind: "pdcc",
         motor: "trivedi-keshri-660w",
-        settings: &[
-            ("reference", "quasi_square"),
-            ("saturation", "torque_priority"),
-        ],
+        settings: &[("saturation", "torque_priority")],
     },
     Drive {
         kind: "pdcc",
@@ -109,17 +106,12 @@ pub const DRIVES: &[Drive] = &[
     Drive {
         kind: "pi-pwm",
         motor: "teknic-m2310p",
-        settings: &[
-            ("reference", "quasi_square"),
-            ("saturation", "nearest"),
-            ("start_up", "short"),
-        ],
+        settings: &[("saturation", "nearest"), ("start_up", "short")],
     },
     Drive {
         kind: "pi-pwm",
         motor: "anaheim-bly172s",
         settings: &[
-            ("reference", "quasi_square"),
             ("saturation", "keep_angle"),
             ("feed_forward", "off"),
             ("tuning", "slow_integral"),
