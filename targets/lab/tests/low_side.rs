@@ -208,8 +208,8 @@ fn figures(common_mode: &str, rpm: f64) -> FiguresOfMerit {
     measured.figures
 }
 
-/// A leg that stays low for a third of the turn does not switch in it. The price is at most a point of ripple, peak to
-/// peak; its RMS does not rise.
+/// A leg that stays low for a third of the turn does not switch in it. The price is at most 0.9 points of ripple, peak
+/// to peak.
 #[test]
 fn clamped_legs_switch_a_third_less_for_little_more_ripple() {
     for rpm in [400.0, 1000.0, 1500.0] {
@@ -219,14 +219,14 @@ fn clamped_legs_switch_a_third_less_for_little_more_ripple() {
         let of_each = [&centred, &readable, &clamped].map(switching);
         let text = format!("{of_each:?} of 20 kHz at {rpm} rpm");
         assert!((of_each[0] - 1.0).abs() < 1e-9, "{text}");
-        // Lowered legs reach the end of the period now and then, and do not switch in it.
+        // A leg that reaches an end of the period does not switch in it.
         assert!((0.94..=1.0).contains(&of_each[1]), "{text}");
-        assert!((of_each[2] - 2.0 / 3.0).abs() < 0.002, "{text}");
+        assert!((0.64..0.67).contains(&of_each[2]), "{text}");
         let ripple = |of: &FiguresOfMerit| of.ripple_pp_pct.zip(of.ripple_rms_pct);
         let (pp, rms) = ripple(&clamped).expect("has torque");
         let (pp_centred, rms_centred) = ripple(&centred).expect("has torque");
         let text = format!("{pp} % pp, {rms} % RMS; centred {pp_centred} %, {rms_centred} %");
-        assert!(pp < pp_centred + 1.1, "{text} at {rpm} rpm");
-        assert!(rms < rms_centred + 0.01, "{text} at {rpm} rpm");
+        assert!(pp < pp_centred + 0.9, "{text} at {rpm} rpm");
+        assert!(rms < rms_centred + 0.1, "{text} at {rpm} rpm");
     }
 }
