@@ -237,7 +237,10 @@ fn readme_shows_emitted_code() {
 #[test]
 fn a_drive_is_read_in_one_sitting() {
     assert_lines("pdcc", 700..=900);
-    assert_lines("pdcc:reference=quasi_square", 400..=560);
+    assert_lines(
+        "pdcc:reference=quasi_square,hall_capture=sampled",
+        400..=560,
+    );
 }
 
 fn assert_lines(variant: &str, expected: RangeInclusive<usize>) {
