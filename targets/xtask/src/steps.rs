@@ -231,6 +231,13 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
                 &["test", "--package", "hexagen-lab", "--test", "c99"],
             )
         },
+        Step {
+            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
+            ..step(
+                "default drives of random motors",
+                &["test", "--package", "hexagen-lab", "--test", "defaults"],
+            )
+        },
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
         on_target("programs", &[]),
