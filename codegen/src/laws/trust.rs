@@ -47,9 +47,8 @@ pub fn trust_in_estimate(spec: &Spec) -> Option<Trust> {
         }
     };
     let followed = (per_filter * options.emf_filter).to_degrees();
-    let omega_e = motor.rated_speed * f64::from(motor.pole_pairs);
     Some(Trust {
-        turn: (omega_e * spec.inverter.t_s).to_degrees(),
+        turn: motor.rated_turn(spec.inverter.t_s),
         limit: shaped.min(followed),
         filtered: followed < shaped,
     })

@@ -125,6 +125,11 @@ pub struct MotorSpec {
 }
 
 impl MotorSpec {
+    /// Turn of the rotor at rated speed in `t_s` seconds, electrical degrees.
+    pub fn rated_turn(&self, t_s: f64) -> f64 {
+        (self.rated_speed * f64::from(self.pole_pairs) * t_s).to_degrees()
+    }
+
     /// Torque per ampere of the rated current, Nm/A.
     pub fn rated_torque_constant(&self) -> f64 {
         self.emf_constant * self.emf_shape.rated_factor()

@@ -34,6 +34,16 @@ pub enum CurrentSensing {
     LowSide(SensingTimes),
 }
 
+impl CurrentSensing {
+    /// What the sensors need; none where they are in the phases.
+    pub fn times(self) -> Option<SensingTimes> {
+        match self {
+            Self::InPhase => None,
+            Self::LowSide(times) => Some(times),
+        }
+    }
+}
+
 /// What a sensor in the low leg needs, second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensingTimes {

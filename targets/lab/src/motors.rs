@@ -1,7 +1,7 @@
 //! The motor library, and how well each motor's default drive does.
 
-use crate::closed_loop::{Measurement, RunOptions, STARTS, Trip, measure};
-use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use crate::closed_loop::{Measurement, Trip};
+use crate::engine::{PlantOptions, Prepared, SelectedMotor};
 use crate::{LabError, Progress};
 use hexagen_codegen::spec::Spec;
 use rayon::prelude::*;
@@ -93,22 +93,17 @@ pub enum Limit {
 }
 
 impl RatedPoint {
-    /// Runs a drive at a share of its rated speed and the torque of its demand, times `sign`, on the
-    /// plant of its motor's file. A negative share is backward.
+    /// Runs a drive at `speed_pct` of its rated speed, negative for backward, with `sign` times its
+    /// demanded torque.
     ///
     /// # Errors
     /// A plant parameter out of range.
     pub fn measure(drive: &Prepared, speed_pct: i32, sign: f64) -> Result<Self, LabError> {
         let torque = sign * drive.demand();
         let omega = f64::from(speed_pct) / 100.0 * drive.spec.motor.rated_speed;
-        let run = RunOptions {
-            starts: vec![STARTS[0]],
-            ..run_of(&drive.spec, omega, torque)
-        };
-        let maker = drive.maker(Model::Fixed, drive.set_point(torque));
         let Measurement {
             figures, tripped, ..
-        } = measure(&plant_of(&drive.spec), &run, maker)?;
+        } = drive.measure_once(omega, torque)?;
         let mean = figures.mean_torque_nm.filter(|_| tripped.is_none());
         Ok(Self {
             speed_pct: speed_pct.unsigned_abs(),
@@ -125,8 +120,8 @@ impl RatedPoint {
         self.torque_pct.is_some_and(holds) && self.ripple_pct.is_some_and(|ripple| ripple <= most)
     }
 
-    /// What limits a drive here.
-    fn limit(&self) -> Limit {
+    /// What limits a drive that is not right here.
+    pub fn limit(&self) -> Limit {
         if self.tripped.is_some() {
             Limit::StartOnFastRotor
         } else if self.saturated_pct.is_some_and(|share| share > SATURATED) {
@@ -139,8 +134,7 @@ impl RatedPoint {
 
 /// Turn of the rotor in a control period at rated speed, electrical degrees.
 pub fn degrees_per_period(spec: &Spec) -> f64 {
-    let omega_e = spec.motor.rated_speed * f64::from(spec.motor.pole_pairs);
-    (omega_e * spec.inverter.t_s).to_degrees()
+    spec.motor.rated_turn(spec.inverter.t_s)
 }
 
 /// Greatest ripple of a drive that is right, percent.

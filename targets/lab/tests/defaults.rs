@@ -2,7 +2,7 @@
 
 use hexagen_codegen::spec::HallCapture;
 use hexagen_lab::engine::{MotorSource, PlantOptions, Prepared, SelectedMotor, prepare};
-use hexagen_lab::motors::{RatedPoint, SPEEDS, degrees_per_period, greatest_ripple};
+use hexagen_lab::motors::{Limit, RatedPoint, SPEEDS, degrees_per_period, greatest_ripple};
 use hexagen_tests::random_motor::RandomMotor;
 use rayon::prelude::*;
 use std::env;
@@ -80,9 +80,6 @@ const DRAWN: [usize; 2] = [20, 200];
 /// Electrical degrees in a control period at rated speed, up to which a drive is right.
 const FASTEST: f64 = 15.0;
 
-/// Share of periods at the edge of the hexagon above which the bus limits a drive, percent.
-const SATURATED: f64 = 0.5;
-
 /// Nearly all points that neither end at the bus nor begin on a rotor that is too fast are right.
 #[test]
 fn random_motors_are_right_by_default() {
@@ -109,9 +106,7 @@ fn random_motors_are_right_by_default() {
             })
         })
         .collect();
-    let is_known = |point: &RatedPoint| {
-        point.tripped.is_some() || point.saturated_pct.is_some_and(|share| share > SATURATED)
-    };
+    let is_known = |point: &RatedPoint| point.limit() != Limit::ControlPeriod;
     let (known, unknown): (Vec<_>, Vec<_>) = wrong.iter().partition(|(_, point)| is_known(point));
     println!("{} of {points} points: {known:#?}", known.len());
     assert!(3 * known.len() < points, "{} of {points}", known.len());

@@ -340,8 +340,8 @@ pub(crate) fn read_common(
     errors: &mut Collector,
 ) -> Option<LoopOptions> {
     let advance = reader.plain(errors, "advance");
-    let is_advanced = advance.as_ref().is_some_and(|given| given.si > 0.0);
-    let reference = read_reference(reader, traits, is_advanced, errors);
+    let advanced = advance.as_ref().filter(|given| given.si > 0.0);
+    let reference = read_reference(reader, traits, advanced.is_some(), errors);
     let emf = read_emf(reader, traits, reference, errors);
     let emf_filter = read_filter(reader, emf, errors);
     let delay = reader.integer_or_preset(errors, "delay");
@@ -352,8 +352,7 @@ pub(crate) fn read_common(
     let speed = read_speed_loop(reader, surroundings, errors);
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
 
-    if let Some(advance) = &advance
-        && advance.si > 0.0
+    if let Some(advance) = advanced
         && reference == Reference::Proportional
         && traits.advance_idle
     {
@@ -400,17 +399,19 @@ fn read_reference(
         .unwrap_or(by_default)
 }
 
-/// An estimate lags behind an EMF that turns, and the torque with it; a model knows the angle, which
-/// a proportional reference needs anyway, and its observer what the motor's data lack.
+/// An estimated EMF is late where the EMF turns fast, and so is the torque. A modelled one is not: it
+/// takes the angle, which a proportional reference needs anyway. The observer corrects wrong motor data.
 fn read_emf(
     reader: &Reader,
     traits: Traits,
     reference: Reference,
     errors: &mut Collector,
 ) -> EmfSource {
-    let knows_angle = reference == Reference::Proportional;
-    let observes = knows_angle && traits.uses_emf && reader.field("emf_filter").is_none();
-    let by_default = if observes && traits.pulses_three_legs {
+    let observes = reference == Reference::Proportional
+        && traits.pulses_three_legs
+        && traits.uses_emf
+        && reader.field("emf_filter").is_none();
+    let by_default = if observes {
         EmfSource::Observer
     } else {
         EmfSource::Estimated

@@ -7,8 +7,8 @@ use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{HallCapture, Reference};
-use hexagen_lab::closed_loop::{Held, Measurement, RunOptions, STARTS, Trip, measure};
-use hexagen_lab::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use hexagen_lab::closed_loop::{Held, Trip};
+use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::text::significant;
 use serde::Serialize;
 
@@ -243,12 +243,7 @@ impl Checked {
 /// The fixed-point program at a speed, in rad/s, with the demanded torque.
 fn at_speed(drive: &Prepared, omega_m: f64) -> Result<Point, Failure> {
     let demand = drive.demand();
-    let run = RunOptions {
-        starts: vec![STARTS[0]],
-        ..run_of(&drive.spec, omega_m, demand)
-    };
-    let maker = drive.maker(Model::Fixed, drive.set_point(demand));
-    let measured: Measurement = measure(&plant_of(&drive.spec), &run, maker)?;
+    let measured = drive.measure_once(omega_m, demand)?;
     let figures = measured.figures;
     let torque_pct = figures.mean_torque_nm.map(|torque| 100.0 * torque / demand);
     Ok(Point {

@@ -1,4 +1,4 @@
-//! What a command ran: the head of its JSON, and of its line.
+//! Motor, controller and model of a command that runs a drive, for its JSON and its text.
 
 use hexagen_lab::engine::{EngineKind, Model, Prepared};
 use serde::Serialize;

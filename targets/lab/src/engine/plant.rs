@@ -2,17 +2,14 @@
 
 use crate::closed_loop::{Delay, RunOptions};
 use crate::plant::{AdcChannel, EmfShape, LowSide, PlantParams, Wiring};
-use hexagen_codegen::spec::{self, CurrentSensing, Spec};
+use hexagen_codegen::spec::{self, Spec};
 
 /// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
 /// time of the specification, ideal diodes, the shaft held at its speed.
 pub fn plant_of(spec: &Spec) -> PlantParams {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let sensors = inverter.sensors();
-    let times = match inverter.current_sensing {
-        CurrentSensing::InPhase => None,
-        CurrentSensing::LowSide(times) => Some(times),
-    };
+    let times = inverter.current_sensing.times();
     PlantParams {
         pole_pairs: motor.pole_pairs,
         resistance: [motor.resistance; 3],

@@ -1,9 +1,11 @@
 //! A drive taken through the generator, with its models.
 
 use super::{
-    AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, reach_of,
+    AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, plant_of,
+    reach_of, run_of,
 };
-use crate::plant::Truth;
+use crate::closed_loop::{Measurement, RunOptions, STARTS, measure};
+use crate::plant::{PlantError, Truth};
 use crate::{Interpreted, formats, state_names};
 use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
@@ -242,6 +244,20 @@ impl Prepared {
     /// limit.
     pub fn demand(&self) -> f64 {
         self.rated_torque().min(self.reach())
+    }
+
+    /// The fixed-point program from one start, on the plant of its motor's file, at a mechanical
+    /// speed in rad/s and a torque in newton metres.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn measure_once(&self, omega_m: f64, torque: f64) -> Result<Measurement, PlantError> {
+        let run = RunOptions {
+            starts: vec![STARTS[0]],
+            ..run_of(&self.spec, omega_m, torque)
+        };
+        let maker = self.maker(Model::Fixed, self.set_point(torque));
+        measure(&plant_of(&self.spec), &run, maker)
     }
 
     /// Rated speed in rpm.

@@ -193,8 +193,8 @@ impl PlantOptions {
         {
             channel.offset += error / channel.amperes_per_count;
         }
-        for (channel, scale) in plant.adc.iter_mut().zip(self.scale_adc.unwrap_or([1.0; 2])) {
-            channel.amperes_per_count *= scale;
+        plant.scale_adc(self.scale_adc.unwrap_or([1.0; 2]));
+        for channel in &mut plant.adc {
             channel.noise = self.adc_noise.unwrap_or(channel.noise);
         }
         if let Some(time) = self.conversion_time {

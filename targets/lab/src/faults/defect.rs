@@ -154,11 +154,7 @@ impl PlantDefect {
                 let most = MOST_DEAD_TIME * plant.pwm_period();
                 plant.dead_time = plant.dead_time.max((plant.dead_time + more).min(most));
             }
-            Self::AdcScale(scales) => {
-                for (channel, scale) in plant.adc.iter_mut().zip(scales) {
-                    channel.amperes_per_count *= scale;
-                }
-            }
+            Self::AdcScale(scales) => plant.scale_adc(scales),
             Self::AdcNoise { rms } => {
                 for channel in &mut plant.adc {
                     channel.noise = rms;

@@ -226,4 +226,11 @@ impl PlantParams {
         self.k_phase = self.k_phase.map(|x| x * k_b);
         self
     }
+
+    /// Scales the true current per ADC count of both channels, unknown to the controller.
+    pub fn scale_adc(&mut self, scales: [f64; 2]) {
+        for (channel, scale) in self.adc.iter_mut().zip(scales) {
+            channel.amperes_per_count *= scale;
+        }
+    }
 }

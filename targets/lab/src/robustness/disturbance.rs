@@ -2,7 +2,7 @@
 
 use crate::engine::PlantOptions;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{CurrentSensing, InverterSpec};
+use hexagen_codegen::spec::InverterSpec;
 
 /// A plant option.
 type Scale = fn(&mut PlantOptions) -> &mut Option<f64>;
@@ -97,18 +97,12 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
     add("ADC noise 1 count rms", &|plant| {
         plant.adc_noise = Some(plant.adc_noise.unwrap_or(0.0).hypot(ADC_NOISE));
     });
-    if has_one_adc(inverter) && undisturbed.conversion_time.is_none() {
+    // The board states that its currents are converted one after the other.
+    let times = inverter.current_sensing.times();
+    if times.is_some_and(|times| times.conversion > 0.0) && undisturbed.conversion_time.is_none() {
         add("both currents at once", &|plant| {
             plant.conversion_time = Some(0.0);
         });
     }
     all
-}
-
-/// Whether the board states that its currents are converted one after the other.
-fn has_one_adc(inverter: &InverterSpec) -> bool {
-    match inverter.current_sensing {
-        CurrentSensing::InPhase => false,
-        CurrentSensing::LowSide(times) => times.conversion > 0.0,
-    }
 }

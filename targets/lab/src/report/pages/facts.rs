@@ -4,7 +4,7 @@ use crate::report::{Block, Cell, Column, Table};
 use crate::results::Results;
 use crate::text::{grouped, number, quantity};
 use hexagen_codegen::spec::{BusSource, EmfShape};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// The page's title.
 pub fn title(data: &Results) -> String {
@@ -146,7 +146,7 @@ fn derived(data: &Results) -> Vec<(&'static str, String)> {
     let pole_pairs = f64::from(motor.pole_pairs);
     let per_volt = inverter.t_s / motor.inductance;
     let emf = line_factor(motor.emf_shape) * motor.emf_constant * motor.rated_speed;
-    let degrees = (motor.rated_speed * pole_pairs * inverter.t_s) * 180.0 / PI;
+    let degrees = motor.rated_turn(inverter.t_s);
     vec![
         ("Current for the demand", quantity(data.current, "A")),
         (
