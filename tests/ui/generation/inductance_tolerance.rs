@@ -21,7 +21,7 @@ controller! {
             adc_bits: 12,
             adc_range: 40 A,
         },
-        controller: pdcc,
+        controller: pdcc { reference: quasi_square },
     }
 }
 
