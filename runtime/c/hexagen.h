@@ -200,10 +200,18 @@ static inline hexagen_status hexagen_status_of(int32_t word, bool bus_is_stale)
 
 /* ---- Arithmetic -------------------------------------------------------------------------- */
 
-/** The two's complement word with these bits. */
+/**
+ * The word with these bits: int32_t is two's complement by C99. Without a branch, because gcc 12
+ * loses the sum of a branch on its sign on cores with Thumb-1 alone.
+ */
 static inline int32_t hexagen_wrap(uint32_t bits)
 {
-    return (bits <= UINT32_C(0x7fffffff)) ? (int32_t)bits : -1 - (int32_t)~bits;
+    union {
+        uint32_t bits;
+        int32_t word;
+    } same;
+    same.bits = bits;
+    return same.word;
 }
 
 /** x 2^shift; shift is 0 to 30. */

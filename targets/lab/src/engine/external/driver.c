@@ -19,8 +19,7 @@ static uint32_t bytes(int count)
 
 static int32_t word(void)
 {
-    const uint32_t bits = bytes(4);
-    return (bits <= UINT32_C(0x7fffffff)) ? (int32_t)bits : -1 - (int32_t)~bits;
+    return hexagen_wrap(bytes(4));
 }
 
 static void answer(int count, uint32_t number)
