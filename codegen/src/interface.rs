@@ -146,6 +146,8 @@ pub struct Limits {
     pub sectors: u32,
     /// Control periods of a sector below which braking shorts the motor.
     pub brake_periods: i32,
+    /// Control periods that a start waits at most for the rotor's angle; 0 for none.
+    pub start_periods: u16,
     /// Least and greatest count of the bus ADC without a fault; 0 and 65535 for none.
     pub bus_counts: [u16; 2],
     /// The current sensors.

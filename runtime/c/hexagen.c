@@ -1,7 +1,7 @@
 /* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
-#if HEXAGEN_ABI != 3
+#if HEXAGEN_ABI != 4
 #error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
 #endif
 
@@ -87,11 +87,32 @@ int32_t hexagen_whole(int32_t number)
 
 /* ---- Supervision ------------------------------------------------------------------------- */
 
+/** The mode of a drive that is to control with so many periods of a start before. */
+static hexagen_mode before_control(uint16_t periods)
+{
+    return (periods == 0U) ? HEXAGEN_MODE_RUN : HEXAGEN_MODE_START;
+}
+
+/** Nothing is known of the rotor. */
+static void forget_turn(hexagen_supervisor *supervisor)
+{
+    supervisor->turn_hall = 0;
+    supervisor->turn_age = 0;
+    supervisor->turn_interval = 0;
+    supervisor->turn_direction = 0;
+}
+
+/** Control follows, once the rotor's angle is known. */
+static void start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    supervisor->countdown = limits->start_periods;
+    supervisor->mode = before_control(limits->start_periods);
+    forget_turn(supervisor);
+}
+
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    supervisor->mode = HEXAGEN_MODE_RUN;
     supervisor->fault = HEXAGEN_FAULT_NONE;
-    supervisor->countdown = 0;
     supervisor->hall_prev = 0;
     supervisor->hall_gap = 0;
     supervisor->hall_glitches = 0;
@@ -102,10 +123,7 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
         hexagen_wrap((uint32_t)limits->sensors[0].offset << limits->current_bits);
     supervisor->offset_b =
         hexagen_wrap((uint32_t)limits->sensors[1].offset << limits->current_bits);
-    supervisor->brake_hall = 0;
-    supervisor->brake_age = 0;
-    supervisor->brake_interval = 0;
-    supervisor->brake_direction = 0;
+    start(supervisor, limits);
 }
 
 void hexagen_trip(hexagen_supervisor *supervisor, hexagen_fault fault)
@@ -142,8 +160,10 @@ static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits
     supervisor->offset_a = mean(limits, supervisor->sum_a);
     supervisor->offset_b = mean(limits, supervisor->sum_b);
     supervisor->countdown = limits->precharge_periods;
-    supervisor->mode =
-        (limits->precharge_periods == 0U) ? HEXAGEN_MODE_RUN : HEXAGEN_MODE_PRECHARGE;
+    supervisor->mode = HEXAGEN_MODE_PRECHARGE;
+    if (limits->precharge_periods == 0U) {
+        start(supervisor, limits);
+    }
 }
 
 /** Counts a period down; true for the last one. */
@@ -155,7 +175,10 @@ static bool is_last(hexagen_supervisor *supervisor)
     return supervisor->countdown == 0U;
 }
 
-/** Calibration averages the counts of all its samples; then pre-charge counts its periods down. */
+/**
+ * Calibration averages the counts of all its samples; then pre-charge counts its periods down, and
+ * the start follows.
+ */
 static void start_up(
     hexagen_supervisor *supervisor, const hexagen_limits *limits, int32_t count_a, int32_t count_b)
 {
@@ -171,8 +194,11 @@ static void start_up(
         break;
     case HEXAGEN_MODE_PRECHARGE:
         if (is_last(supervisor)) {
-            supervisor->mode = HEXAGEN_MODE_RUN;
+            start(supervisor, limits);
         }
+        break;
+    case HEXAGEN_MODE_START:
+        supervisor->mode = before_control(supervisor->countdown);
         break;
     case HEXAGEN_MODE_RUN:
     case HEXAGEN_MODE_TRIPPED:
@@ -228,39 +254,52 @@ static bool follows(uint32_t sector, uint32_t next)
     return next == ((sector == 6U) ? 1U : sector + 1U);
 }
 
-/**
- * Follows the rotor for a control period; whether a sector lasts long enough for a short-circuited
- * motor to take no more than the largest current.
- */
-static bool is_slow(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+/** Follows the rotor for a control period; whether a second edge in one direction ends it. */
+static bool is_known(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
 {
-    const uint32_t before = sector_of(limits, supervisor->brake_hall);
+    const uint32_t before = sector_of(limits, supervisor->turn_hall);
     const uint32_t now = sector_of(limits, hall);
+    bool is_second = false;
     if (before != 0U && now != before) {
-        if (follows(before, now)) {
-            supervisor->brake_direction = 1;
-        } else if (follows(now, before)) {
-            supervisor->brake_direction = -1;
-        }
-        supervisor->brake_interval = supervisor->brake_age;
-        supervisor->brake_age = 0;
+        const int32_t direction = follows(before, now) ? 1 : follows(now, before) ? -1 : 0;
+        is_second = direction != 0 && direction == supervisor->turn_direction;
+        supervisor->turn_direction = direction;
+        supervisor->turn_interval = supervisor->turn_age;
+        supervisor->turn_age = 0;
     }
-    supervisor->brake_hall = hall;
-    supervisor->brake_age = hexagen_min(supervisor->brake_age + 1, limits->brake_periods);
-    return hexagen_max(supervisor->brake_age, supervisor->brake_interval) == limits->brake_periods;
+    supervisor->turn_hall = hall;
+    supervisor->turn_age = hexagen_min(supervisor->turn_age + 1, limits->brake_periods);
+    return is_second;
 }
 
-/** Shorts a slow rotor through the lower switches, and asks for torque against a fast one. */
+/** Follows a rotor without control, and counts a start down, which the rotor's angle ends. */
+static void follow(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+{
+    if (is_known(supervisor, limits, hall)) {
+        supervisor->countdown = 0;
+    } else {
+        (void)is_last(supervisor);
+    }
+}
+
+/**
+ * Shorts a slow rotor through the lower switches, and asks for torque against a fast one; behind an
+ * interrupted start.
+ */
 static hexagen_rested go_on_braking(
-    hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
+    const hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
     hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
-    if (is_slow(supervisor, limits, hall)) {
+    if (supervisor->countdown != 0U) {
+        return rested;
+    }
+    /* A sector lasts long enough for a short-circuited motor to take at most the largest current. */
+    if (hexagen_max(supervisor->turn_age, supervisor->turn_interval) == limits->brake_periods) {
         rested.leg = HEXAGEN_LEG_LOW;
     } else {
         rested.is_controlled = true;
         rested.is_braking = true;
-        rested.against = supervisor->brake_direction;
+        rested.against = supervisor->turn_direction;
     }
     return rested;
 }
@@ -293,40 +332,51 @@ hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits
         hexagen_trip(supervisor, fault);
         return rested;
     }
+    if (supervisor->mode == HEXAGEN_MODE_START || supervisor->mode == HEXAGEN_MODE_COAST
+        || supervisor->mode == HEXAGEN_MODE_BRAKE) {
+        follow(supervisor, limits, hall);
+    }
     if (supervisor->mode == HEXAGEN_MODE_RUN) {
         rested.is_controlled = is_bridged;
     } else if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {
         rested.leg = HEXAGEN_LEG_LOW;
     } else if (supervisor->mode == HEXAGEN_MODE_BRAKE) {
-        rested = go_on_braking(supervisor, limits, hall);
+        rested = go_on_braking(supervisor, limits);
     }
     start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
     return rested;
 }
 
-/** Whether control is on, or off on purpose: not in start-up, and not tripped. */
+/**
+ * Whether control is on, to begin next, or off on purpose: neither calibrating nor pre-charging, and
+ * not tripped.
+ */
 static bool is_ready(const hexagen_supervisor *supervisor)
 {
-    return supervisor->mode == HEXAGEN_MODE_RUN || supervisor->mode == HEXAGEN_MODE_COAST
-        || supervisor->mode == HEXAGEN_MODE_BRAKE;
+    return supervisor->mode == HEXAGEN_MODE_RUN || supervisor->mode == HEXAGEN_MODE_START
+        || supervisor->mode == HEXAGEN_MODE_COAST || supervisor->mode == HEXAGEN_MODE_BRAKE;
+}
+
+static void stop(hexagen_supervisor *supervisor, hexagen_mode mode)
+{
+    if (!is_ready(supervisor)) {
+        return;
+    }
+    /* In control the rotor is not followed here. */
+    if (supervisor->mode == HEXAGEN_MODE_RUN) {
+        forget_turn(supervisor);
+    }
+    supervisor->mode = mode;
 }
 
 void hexagen_coast(hexagen_supervisor *supervisor)
 {
-    if (is_ready(supervisor)) {
-        supervisor->mode = HEXAGEN_MODE_COAST;
-    }
+    stop(supervisor, HEXAGEN_MODE_COAST);
 }
 
 void hexagen_brake(hexagen_supervisor *supervisor)
 {
-    if (is_ready(supervisor) && supervisor->mode != HEXAGEN_MODE_BRAKE) {
-        supervisor->mode = HEXAGEN_MODE_BRAKE;
-        supervisor->brake_hall = 0;
-        supervisor->brake_age = 0;
-        supervisor->brake_interval = 0;
-        supervisor->brake_direction = 0;
-    }
+    stop(supervisor, HEXAGEN_MODE_BRAKE);
 }
 
 bool hexagen_resume(hexagen_supervisor *supervisor)
@@ -334,7 +384,7 @@ bool hexagen_resume(hexagen_supervisor *supervisor)
     const bool is_off =
         supervisor->mode == HEXAGEN_MODE_COAST || supervisor->mode == HEXAGEN_MODE_BRAKE;
     if (is_off) {
-        supervisor->mode = HEXAGEN_MODE_RUN;
+        supervisor->mode = before_control(supervisor->countdown);
     }
     return is_off;
 }
@@ -365,7 +415,8 @@ void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *lim
 void hexagen_precharge(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
     const bool may_begin =
-        supervisor->mode == HEXAGEN_MODE_RUN || supervisor->mode == HEXAGEN_MODE_PRECHARGE;
+        supervisor->mode == HEXAGEN_MODE_RUN || supervisor->mode == HEXAGEN_MODE_START
+        || supervisor->mode == HEXAGEN_MODE_PRECHARGE;
     if (may_begin && limits->precharge_periods != 0U) {
         supervisor->mode = HEXAGEN_MODE_PRECHARGE;
         supervisor->countdown = limits->precharge_periods;
@@ -505,10 +556,10 @@ void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words)
     words[8] = (int32_t)supervisor->hall_prev;
     words[9] = (int32_t)supervisor->hall_gap;
     words[10] = (int32_t)supervisor->hall_glitches;
-    words[11] = (int32_t)supervisor->brake_hall;
-    words[12] = supervisor->brake_age;
-    words[13] = supervisor->brake_interval;
-    words[14] = supervisor->brake_direction;
+    words[11] = (int32_t)supervisor->turn_hall;
+    words[12] = supervisor->turn_age;
+    words[13] = supervisor->turn_interval;
+    words[14] = supervisor->turn_direction;
 }
 
 void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
@@ -524,9 +575,9 @@ void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
     supervisor->hall_prev = (uint16_t)words[8];
     supervisor->hall_gap = (uint16_t)words[9];
     supervisor->hall_glitches = (uint16_t)words[10];
-    supervisor->brake_hall = (uint16_t)words[11];
-    supervisor->brake_age = words[12];
-    supervisor->brake_interval = words[13];
-    supervisor->brake_direction = words[14];
+    supervisor->turn_hall = (uint16_t)words[11];
+    supervisor->turn_age = words[12];
+    supervisor->turn_interval = words[13];
+    supervisor->turn_direction = words[14];
 }
 #endif

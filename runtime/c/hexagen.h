@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /** Version of this interface. Drives refuse to compile with a header of another version. */
-#define HEXAGEN_ABI 3
+#define HEXAGEN_ABI 4
 
 /** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -141,7 +141,9 @@ typedef enum {
     /** All legs off on purpose, until `resume`. */
     HEXAGEN_MODE_COAST = 4,
     /** Slowing the rotor down, until `resume`. */
-    HEXAGEN_MODE_BRAKE = 5
+    HEXAGEN_MODE_BRAKE = 5,
+    /** All legs off until the rotor's angle is known, or the rotor known to be slow; control follows. */
+    HEXAGEN_MODE_START = 6
 } hexagen_mode;
 
 /** Cause of a trip. If one control period has several, the first of this list is reported. */
@@ -404,6 +406,11 @@ typedef struct {
      * than the largest current; 0 if it never takes more.
      */
     int32_t brake_periods;
+    /**
+     * Control periods that a start waits at most for the rotor's angle: two sectors at the speed up
+     * to which control may begin without it; 0 for none.
+     */
+    uint16_t start_periods;
     /** Least and greatest ADC count of the bus voltage without a fault; 0 and 65535 for none. */
     uint16_t bus_least;
     uint16_t bus_most;
@@ -415,16 +422,16 @@ typedef struct {
  */
 #define HEXAGEN_LIMITS(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most) \
+    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most) \
     HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
         offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-        stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most, \
+        stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most, \
         HEXAGEN_SENSED_AB, adc_inverted, offset, offset_least, offset_most)
 
 /** The same for any two sensors: the first one's sign and offset, then phases and the second's. */
 #define HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
-    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most, \
+    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most, \
     sensed, second_inverted, second_offset, second_least, second_most) \
     typedef int name##_hold[HEXAGEN_LIMITS_HOLD((int64_t)(adc_max), current_bits, trip, \
         (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods, \
@@ -448,7 +455,7 @@ typedef struct {
         { { adc_inverted, offset, offset_least, offset_most }, \
             { second_inverted, second_offset, second_least, second_most } }, \
         trip, current_least, current_most, calibration_log2, precharge_periods, stall_periods, \
-        hall_inverted, hall_glitches, sectors, brake_periods, bus_least, bus_most }
+        hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most }
 
 /**
  * Whether limits are valid, but for their sensors; the phase without a sensor has the negative sum
@@ -498,7 +505,7 @@ typedef struct {
 typedef struct {
     hexagen_mode mode;
     hexagen_fault fault;
-    /** Periods left in calibration or pre-charge. */
+    /** Periods left in calibration, pre-charge or start. */
     uint16_t countdown;
     /**
      * Last Hall code that was not disturbed, if stalls are detected or codes bridged; 0 before the
@@ -516,13 +523,16 @@ typedef struct {
     /** Offsets of both, words of current. */
     int32_t offset_a;
     int32_t offset_b;
-    /** Rotation since braking began: Hall code of the last period, 0 before the first. */
-    uint16_t brake_hall;
+    /**
+     * Rotation since control ended or the drive was made: Hall code of the last period, 0 before the
+     * first.
+     */
+    uint16_t turn_hall;
     /** Control periods since the last edge, and between the last two. */
-    int32_t brake_age;
-    int32_t brake_interval;
-    /** 1 forward, -1 backward; 0 before the first edge. */
-    int32_t brake_direction;
+    int32_t turn_age;
+    int32_t turn_interval;
+    /** 1 forward, -1 backward; 0 before the first edge and behind one that skips sectors. */
+    int32_t turn_direction;
 } hexagen_supervisor;
 
 /**
@@ -675,7 +685,7 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
 }
 
 /**
- * A supervisor that allows control from the first period on, with nominal offsets.
+ * A supervisor that starts, with nominal offsets: control follows, once the rotor's angle is known.
  */
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
@@ -950,7 +960,8 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
 
 /**
  * Copies the words of a supervisor: mode, fault, countdown, sum_a, sum_b, offset_a, offset_b,
- * stall_count, hall_prev, brake_hall, brake_age, brake_interval, brake_direction.
+ * stall_count, hall_prev, hall_gap, hall_glitches, turn_hall, turn_age, turn_interval,
+ * turn_direction.
  */
 void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words);
 

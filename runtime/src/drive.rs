@@ -27,8 +27,9 @@ use core::ops::{ControlFlow, Deref};
 /// }
 /// ```
 ///
-/// A new drive controls currents from its first period on, with set-point 0 and nominal current
-/// offsets. Where offsets or the bootstrap capacitors of the inverter need it, call
+/// A new drive controls currents at set-point 0 with nominal current offsets, behind a start in which
+/// it finds the angle of a turning rotor, where it needs that ([`Mode::Start`](crate::Mode::Start)).
+/// Where offsets or the bootstrap capacitors of the inverter need it, call
 /// [`calibrate`](Self::calibrate) before the first period.
 pub struct Drive<C: Control> {
     set_point: SetPoint<C>,
@@ -224,7 +225,7 @@ impl<C: Control> ControlLoop<'_, C> {
     /// Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.
     /// Ignored while calibrating and pre-charging.
     ///
-    /// Control follows directly, without start-up: if the bootstrap capacitors need it, call
+    /// A start follows, without calibration and pre-charge: if the bootstrap capacitors need it, call
     /// [`precharge`](Self::precharge) first. With a speed loop the set-point is the speed, and
     /// speed 0 brakes a turning rotor with up to the current limit.
     pub fn reset(&mut self) {
@@ -254,7 +255,7 @@ impl<C: Control> ControlLoop<'_, C> {
 
     /// Turns all legs off on purpose, without a fault, until [`resume`](Self::resume) or a reset.
     /// Above the speed at which the EMF reaches the bus voltage the diodes still brake the motor into
-    /// the bus. Ignored when tripped and in start-up.
+    /// the bus. Ignored when tripped, calibrating and pre-charging.
     pub fn coast(&mut self) {
         self.core.supervisor.coast();
         self.publish();
@@ -263,7 +264,7 @@ impl<C: Control> ControlLoop<'_, C> {
     /// Slows the rotor down until [`resume`](Self::resume) or a reset: all lower switches on where
     /// the motor takes no more than the specification's `max_current` that way; above that speed this
     /// current against the rotation, with a speed loop speed 0 within the current that is set, into
-    /// the bus. Ignored when tripped and in start-up.
+    /// the bus. Ignored when tripped, calibrating and pre-charging.
     pub fn brake(&mut self) {
         self.core.supervisor.brake();
         self.publish();

@@ -8,7 +8,7 @@ use crate::signals::Port;
 #[cfg(feature = "signals")]
 use crate::signals::Signals;
 use crate::trip::{Trip, TripRecord};
-use crate::{Control, MeasuredBus, SpeedLoop, Status};
+use crate::{Control, MeasuredBus, SpeedLoop, Status, Supervisor};
 use core::fmt;
 use fixed::types::I16F16;
 
@@ -33,7 +33,7 @@ impl<C: Control> SetPoint<C> {
                 speed: SharedWord::new(Word(0)),
                 bus: C::BUS,
             },
-            status: SharedWord::new(Word(0)),
+            status: SharedWord::new(Word(Supervisor::new(&C::LIMITS, &C::SENSORS).status_bits())),
             signals: Port::new(),
             trip: TripRecord::new(),
         }

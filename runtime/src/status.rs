@@ -21,6 +21,8 @@ pub enum Mode {
     Coast = 4,
     /// Slowing the rotor down, until `resume()`.
     Brake = 5,
+    /// All legs off until the rotor's angle is known, or the rotor known to be slow; control follows.
+    Start = 6,
 }
 
 impl Mode {
@@ -34,6 +36,7 @@ impl Mode {
             2 => Self::Precharge,
             4 => Self::Coast,
             5 => Self::Brake,
+            6 => Self::Start,
             _ => Self::Tripped,
         }
     }
@@ -116,7 +119,7 @@ pub struct Status {
 }
 
 impl Status {
-    /// Whether currents are controlled: not calibrating, pre-charging or tripped.
+    /// Whether currents are controlled: not in start-up, tripped, or off on purpose.
     #[inline]
     #[must_use]
     pub const fn is_running(self) -> bool {
@@ -157,7 +160,7 @@ mod tests {
 
     #[test]
     fn every_status_round_trips_through_its_word() {
-        for number in 0..6 {
+        for number in 0..7 {
             let mode = Mode::from_number(number);
             assert_eq!(mode as i32, number);
             for number in 0..8 {

@@ -44,6 +44,9 @@ pub struct Limits {
     /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
     /// than the largest current; 0 if it never takes more.
     pub brake_periods: i32,
+    /// Control periods that a start waits at most for the rotor's angle: two sectors at the speed up
+    /// to which control may begin without it; 0 for none.
+    pub start_periods: u16,
     /// Least and greatest ADC count of the bus voltage without a fault; 0 and 65535 for none.
     pub bus_counts: [u16; 2],
 }
@@ -264,18 +267,20 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// # Start-up
 ///
-/// A new drive controls currents from its first period on, with set-point 0, nominal current
-/// offsets and bootstrap capacitors not charged. If the inverter needs either, call calibration
-/// first; the steps follow each other automatically:
+/// A new drive controls currents at set-point 0, with nominal current offsets and bootstrap
+/// capacitors not charged. If the inverter needs either, call calibration first; the steps follow
+/// each other automatically:
 ///
 /// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor must be at
 ///    rest. An offset too far from its nominal value trips the drive.
 /// 2. Pre-charge, if specified: periods with all lower switches on, which charge the bootstrap
 ///    capacitors, and short-circuit a turning motor.
-/// 3. Control with the present set-point.
+/// 3. Start, where the law knows the EMF from the rotor's angle: periods with all legs off, until two
+///    Hall edges in one direction give that angle. A rotor that is too slow for them within
+///    [`start_periods`](Limits::start_periods) needs none. So control may begin at any speed.
+/// 4. Control with the present set-point.
 ///
-/// A fault ends start-up and discards its results; a reset leads to control, not back into
-/// start-up.
+/// A fault ends start-up and discards its results; a reset leads to the third step.
 ///
 /// # Coasting and braking
 ///
@@ -284,7 +289,8 @@ const fn is_hall_code(hall: u8) -> bool {
 /// takes the largest current (`max_current`), all lower switches are on; above it the drive controls
 /// that current against the rotation, which feeds the bus; until the first Hall edge tells the
 /// direction, no current. Both go on until [`resume`](Self::resume), a reset or a trip; the
-/// set-point is 0 then. The sensors are watched as in control, but for a stall.
+/// set-point is 0 then. The sensors are watched as in control, but for a stall. A start that they
+/// interrupt goes on meanwhile: braking begins behind it, and so does control if it is resumed before.
 ///
 /// # Safe states
 ///
@@ -317,7 +323,7 @@ const fn is_hall_code(hall: u8) -> bool {
 pub struct Supervisor {
     mode: Mode,
     fault: Option<Fault>,
-    /// Periods left in calibration or pre-charge.
+    /// Periods left in calibration, pre-charge or start.
     countdown: u16,
     /// Last Hall code that was not disturbed, if stalls are detected or codes bridged; 0 before the
     /// first.
@@ -332,11 +338,11 @@ pub struct Supervisor {
     sums: [Word; 2],
     /// Offsets of both, words of current.
     offsets: [Word; 2],
-    /// What braking knows of the rotor.
+    /// What start and braking know of the rotor.
     turn: Turn,
 }
 
-/// Rotation of the rotor, from the Hall edges since braking began.
+/// Rotation of the rotor, from the Hall edges since control ended or the drive was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Turn {
     /// Hall code of the last period; 0 before the first.
@@ -345,7 +351,7 @@ struct Turn {
     age: Word,
     /// Control periods between the last two edges.
     interval: Word,
-    /// 1 forward, -1 backward; 0 before the first edge.
+    /// 1 forward, -1 backward; 0 before the first edge and behind one that skips sectors.
     direction: Word,
 }
 
@@ -357,21 +363,33 @@ impl Turn {
         direction: Word(0),
     };
 
-    /// Follows the rotor for a control period; whether a sector lasts long enough for a
-    /// short-circuited motor to take no more than the largest current.
-    fn is_slow(&mut self, limits: &Limits, hall: u8) -> bool {
+    /// Follows the rotor for a control period; whether a second edge in one direction ends it.
+    fn follow(&mut self, limits: &Limits, hall: u8) -> bool {
         let (before, now) = (limits.sector(self.hall), limits.sector(hall));
-        if before != 0 && now != before {
-            if follows(before, now) {
-                self.direction = Word(1);
-            } else if follows(now, before) {
-                self.direction = Word(-1);
-            }
+        let is_edge = before != 0 && now != before;
+        let direction = if !is_edge {
+            self.direction
+        } else if follows(before, now) {
+            Word(1)
+        } else if follows(now, before) {
+            Word(-1)
+        } else {
+            Word(0)
+        };
+        let is_second = is_edge && direction != 0 && direction == self.direction;
+        if is_edge {
             self.interval = self.age;
             self.age = Word(0);
         }
         self.hall = hall;
+        self.direction = direction;
         self.age = (self.age + 1).min(limits.brake_periods);
+        is_second
+    }
+
+    /// Whether a sector lasts long enough for a short-circuited motor to take no more than the
+    /// largest current.
+    fn is_slow(&self, limits: &Limits) -> bool {
         self.age.max(self.interval) == limits.brake_periods
     }
 }
@@ -379,6 +397,14 @@ impl Turn {
 /// Whether a sector is the next one of the other, forward.
 const fn follows(sector: u32, next: u32) -> bool {
     next == if sector == 6 { 1 } else { sector + 1 }
+}
+
+/// The mode of a drive that is to control with so many periods of a start before.
+const fn before_control(periods: u16) -> Mode {
+    match periods {
+        0 => Mode::Run,
+        _ => Mode::Start,
+    }
 }
 
 /// Count of bridged samples at which counting ends.
@@ -411,21 +437,21 @@ impl Supervisor {
         "hall_prev",
         "hall_gap",
         "hall_glitches",
-        "brake_hall",
-        "brake_age",
-        "brake_interval",
-        "brake_direction",
+        "turn_hall",
+        "turn_age",
+        "turn_interval",
+        "turn_direction",
     ];
 
-    /// A supervisor that allows control from the first period on, with nominal offsets.
+    /// A supervisor that starts, with nominal offsets.
     #[must_use]
     pub const fn new(limits: &Limits, sensors: &Sensors) -> Self {
         let [first, second] = sensors.both(limits);
         let bits = limits.current_bits;
         Self {
-            mode: Mode::Run,
+            mode: before_control(limits.start_periods),
             fault: None,
-            countdown: 0,
+            countdown: limits.start_periods,
             hall_prev: 0,
             hall_gap: 0,
             hall_glitches: 0,
@@ -557,10 +583,13 @@ impl Supervisor {
             self.trip(fault);
             return (checked, Rest::Legs(LegState::Off));
         }
+        if matches!(self.mode, Mode::Start | Mode::Coast | Mode::Brake) {
+            self.follow(limits, hall);
+        }
         let rest = match self.mode {
             Mode::Run if is_bridged => Rest::Control,
             Mode::Precharge => Rest::Legs(LegState::Low),
-            Mode::Brake => self.go_on_braking(limits, hall),
+            Mode::Brake => self.go_on_braking(limits),
             _ => Rest::Legs(LegState::Off),
         };
         self.start_up(limits, sensors, counts);
@@ -578,10 +607,22 @@ impl Supervisor {
         may
     }
 
-    /// Calibration averages the counts of all its samples; then pre-charge counts its periods down.
+    /// Follows a rotor without control, and counts a start down, which the rotor's angle ends.
+    fn follow(&mut self, limits: &Limits, hall: u8) {
+        let is_known = self.turn.follow(limits, hall);
+        self.countdown = if is_known {
+            0
+        } else {
+            self.countdown.saturating_sub(1)
+        };
+    }
+
+    /// Calibration averages the counts of all its samples; then pre-charge counts its periods down,
+    /// and the start follows.
     fn start_up(&mut self, limits: &Limits, sensors: &Sensors, [count_a, count_b]: [Word; 2]) {
         match self.mode {
             Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
+            Mode::Start => self.mode = before_control(self.countdown),
             Mode::Calibrate => {
                 let most = Word::from(limits.adc_max) << limits.calibration_log2;
                 let [sum_a, sum_b] = self.sums;
@@ -595,15 +636,25 @@ impl Supervisor {
             Mode::Precharge => {
                 self.countdown = self.countdown.saturating_sub(1);
                 if self.countdown == 0 {
-                    self.mode = Mode::Run;
+                    self.start(limits);
                 }
             }
         }
     }
 
-    /// Shorts a slow rotor through the lower switches, and asks for torque against a fast one.
-    fn go_on_braking(&mut self, limits: &Limits, hall: u8) -> Rest {
-        if self.turn.is_slow(limits, hall) {
+    /// Control follows, once the rotor's angle is known.
+    const fn start(&mut self, limits: &Limits) {
+        self.countdown = limits.start_periods;
+        self.mode = before_control(limits.start_periods);
+        self.turn = Turn::UNKNOWN;
+    }
+
+    /// Shorts a slow rotor through the lower switches, and asks for torque against a fast one; behind
+    /// an interrupted start.
+    fn go_on_braking(&self, limits: &Limits) -> Rest {
+        if self.countdown != 0 {
+            Rest::Legs(LegState::Off)
+        } else if self.turn.is_slow(limits) {
             Rest::Legs(LegState::Low)
         } else {
             Rest::Against(self.turn.direction)
@@ -632,10 +683,10 @@ impl Supervisor {
             }
         });
         self.countdown = limits.precharge_periods;
-        self.mode = match limits.precharge_periods {
-            0 => Mode::Run,
-            _ => Mode::Precharge,
-        };
+        self.mode = Mode::Precharge;
+        if limits.precharge_periods == 0 {
+            self.start(limits);
+        }
     }
 
     /// Turns all legs off until a reset, for a fault that a sample does not show. The first fault is
@@ -647,37 +698,49 @@ impl Supervisor {
         self.mode = Mode::Tripped;
     }
 
-    /// Whether control is on, or off on purpose: not in start-up, and not tripped.
+    /// Whether control is on, to begin next, or off on purpose: neither calibrating nor pre-charging,
+    /// and not tripped.
     const fn is_ready(&self) -> bool {
-        matches!(self.mode, Mode::Run | Mode::Coast | Mode::Brake)
+        matches!(
+            self.mode,
+            Mode::Run | Mode::Start | Mode::Coast | Mode::Brake
+        )
     }
 
-    /// Turns all legs off until [`resume`](Self::resume). Ignored when tripped and in start-up.
+    /// Turns all legs off until [`resume`](Self::resume). Ignored when tripped, calibrating and
+    /// pre-charging.
     pub fn coast(&mut self) {
-        if self.is_ready() {
-            self.mode = Mode::Coast;
-        }
+        self.stop(Mode::Coast);
     }
 
-    /// Brakes until [`resume`](Self::resume). Ignored when tripped and in start-up.
+    /// Brakes until [`resume`](Self::resume). Ignored when tripped, calibrating and pre-charging.
     pub fn brake(&mut self) {
-        if self.is_ready() && self.mode != Mode::Brake {
-            self.mode = Mode::Brake;
+        self.stop(Mode::Brake);
+    }
+
+    fn stop(&mut self, mode: Mode) {
+        if !self.is_ready() {
+            return;
+        }
+        // In control the rotor is not followed here.
+        if self.mode == Mode::Run {
             self.turn = Turn::UNKNOWN;
         }
+        self.mode = mode;
     }
 
-    /// Ends coasting and braking: control follows. False, without effect, if the drive does neither.
+    /// Ends coasting and braking: what is left of a start follows, or control. False, without effect,
+    /// if the drive does neither.
     pub fn resume(&mut self) -> bool {
         let is_off = matches!(self.mode, Mode::Coast | Mode::Brake);
         if is_off {
-            self.mode = Mode::Run;
+            self.mode = before_control(self.countdown);
         }
         is_off
     }
 
-    /// Clears a trip; keeps calibrated offsets. Control follows, without start-up. False, without
-    /// effect, during calibration and pre-charge.
+    /// Clears a trip; keeps calibrated offsets. A start follows, without calibration and pre-charge.
+    /// False, without effect, during these.
     pub fn reset(&mut self, limits: &Limits, sensors: &Sensors) -> bool {
         let may_reset = self.is_ready() || self.mode == Mode::Tripped;
         if may_reset {
@@ -701,7 +764,8 @@ impl Supervisor {
     /// Starts pre-charge; ignored when tripped, while calibrating, and if the specification has
     /// none.
     pub fn precharge(&mut self, limits: &Limits) {
-        if matches!(self.mode, Mode::Run | Mode::Precharge) && limits.precharge_periods != 0 {
+        let may_begin = matches!(self.mode, Mode::Run | Mode::Start | Mode::Precharge);
+        if may_begin && limits.precharge_periods != 0 {
             self.mode = Mode::Precharge;
             self.countdown = limits.precharge_periods;
         }

@@ -54,6 +54,7 @@ impl Control for SixStep {
         hall_glitches: 0,
         sectors: 0x0423_6510,
         brake_periods: 0,
+        start_periods: 0,
         bus_counts: [0, u16::MAX],
     };
     const UNITS: Units = Units {

@@ -138,7 +138,15 @@ const KINDS_OF_SUPERVISOR: &[Kind] = &[
         replaced(text, code, " + 1)", " + 0)")
     }),
     ("another mode", |text, code| {
-        let modes = ["Run", "Calibrate", "Precharge", "Tripped", "Coast", "Brake"];
+        let modes = [
+            "Run",
+            "Calibrate",
+            "Precharge",
+            "Tripped",
+            "Coast",
+            "Brake",
+            "Start",
+        ];
         let pairs = modes.iter().zip(modes.iter().cycle().skip(1));
         let edits = pairs.flat_map(|(mode, next)| {
             let [mode, next] = [mode, next].map(|mode| format!("Mode::{mode}"));

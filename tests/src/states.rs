@@ -382,17 +382,20 @@ impl<'a> States<'a> {
             }
             0
         };
-        let (mode, countdown) = (self.random.u8(..20), self.random.i32(0..4));
+        let (mode, countdown) = (self.random.u8(..20), self.random.i32(0..5));
         set("mode", &|_| match mode {
-            0..=11 => 0,
-            12 | 13 => 1,
-            14 => 2,
-            15 | 16 => 3,
-            17 => 4,
-            _ => 5,
+            0..=10 => 0,
+            11 | 12 => 1,
+            13 => 2,
+            14 | 15 => 3,
+            16 => 4,
+            17 | 18 => 5,
+            _ => 6,
         });
-        set("countdown", &|word| {
-            if countdown < 3 { countdown } else { word }
+        set("countdown", &|word| match countdown {
+            0..3 => countdown,
+            3 => word,
+            _ => 0,
         });
         let forward = self.random.bool();
         set("direction", &|_| if forward { 1 } else { -1 });
@@ -559,12 +562,13 @@ fn supervisor_ranges(
 ) -> [(i32, i32); Supervisor::NAMES.len()] {
     let samples = 1 << limits.calibration_log2;
     let full = i32::from(limits.adc_max) << limits.calibration_log2;
+    let longest = limits.precharge_periods.max(limits.start_periods).into();
     let word = |offset: u16| i32::from(offset) << limits.current_bits;
     let [first, second] = offsets.map(|[least, most]| (word(least), word(most)));
     Supervisor::NAMES.map(|name| match name {
-        "mode" => (0, 5),
+        "mode" | "turn_hall" => (0, 6),
         "fault" => (0, 7),
-        "countdown" => (0, samples.max(limits.precharge_periods.into())),
+        "countdown" => (0, samples.max(longest)),
         "sum_a" | "sum_b" => (0, full),
         "offset_a" => first,
         "offset_b" => second,
@@ -573,9 +577,8 @@ fn supervisor_ranges(
         "hall_gap" => (0, limits.hall_glitches.into()),
         "hall_glitches" if limits.hall_glitches > 0 => (0, 0x7fff),
         "hall_prev" | "hall_glitches" => (0, 0),
-        "brake_hall" => (0, 6),
-        "brake_age" | "brake_interval" => (0, limits.brake_periods),
-        "brake_direction" => (-1, 1),
+        "turn_age" | "turn_interval" => (0, limits.brake_periods),
+        "turn_direction" => (-1, 1),
         other => unreachable!("a word that no supervisor has: {other}"),
     })
 }

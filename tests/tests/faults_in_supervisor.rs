@@ -105,6 +105,7 @@ macro_rules! new {
                 hall_glitches: limits.hall_glitches,
                 sectors: limits.sectors,
                 brake_periods: limits.brake_periods,
+                start_periods: limits.start_periods,
                 bus_counts: limits.bus_counts,
             };
             let sensors = $module::Sensors {

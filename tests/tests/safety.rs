@@ -32,7 +32,7 @@ hexagen::controller! {
             precharge: 200 us,
             stall_timeout: 1 ms,
         },
-        controller: pdcc,
+        controller: pdcc { emf: estimated },
     }
 }
 
@@ -85,7 +85,7 @@ hexagen::controller! {
             trip_current: 39.5 A,
             calibration_samples: 16,
         },
-        controller: pdcc,
+        controller: pdcc { emf: estimated },
     }
 }
 

@@ -21,7 +21,7 @@ macro_rules! drives {
             pub $name {
                 motor: "../targets/motors/trivedi-keshri-660w.toml",
                 inverter: { $($sensors)* },
-                controller: pdcc { emf: model },
+                controller: pdcc { emf: estimated },
             }
         }
     )*};

@@ -116,7 +116,11 @@ fn limits() -> impl Strategy<Value = Limits> {
         ),
         (number(), any::<u16>(), prop_oneof![Just(0), any::<i32>()]),
         (any::<u8>(), any::<u16>()),
-        (any::<u32>(), any::<i32>(), any::<[u16; 2]>()),
+        (
+            any::<u32>(),
+            (any::<i32>(), prop_oneof![Just(0), any::<u16>()]),
+            any::<[u16; 2]>(),
+        ),
     )
         .prop_map(
             |(
@@ -124,7 +128,7 @@ fn limits() -> impl Strategy<Value = Limits> {
                 (offset, offsets, trip, currents),
                 (calibration_log2, precharge_periods, stall_periods),
                 (hall_inverted, hall_glitches),
-                (sectors, brake_periods, bus_counts),
+                (sectors, (brake_periods, start_periods), bus_counts),
             )| Limits {
                 adc_max,
                 adc_inverted,
@@ -140,6 +144,7 @@ fn limits() -> impl Strategy<Value = Limits> {
                 hall_glitches,
                 sectors,
                 brake_periods,
+                start_periods,
                 bus_counts,
             },
         )

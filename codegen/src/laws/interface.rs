@@ -59,6 +59,7 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
         sectors: (spec.hall_sectors().into_iter().rev())
             .fold(0, |word, sector| word << 4 | u32::from(sector)),
         brake_periods: spec.brake_periods() as i32,
+        start_periods: spec.start_periods(),
         bus_counts: inverter.bus_counts(),
         sensors: Sensors {
             phases: match inverter.sensed_phases {

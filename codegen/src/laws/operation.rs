@@ -87,6 +87,25 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
     lines
 }
 
+/// When control begins, and at which speed it may.
+fn start(spec: &Spec, design: &LoopDesign) -> String {
+    let told = match spec.inverter.bus {
+        BusSource::Fixed => "",
+        BusSource::Measured { .. } => " and with the bus voltage set by `set_bus`",
+    };
+    let speed = start_rpm(spec, design);
+    match spec.start_periods() {
+        0 => format!(
+            "Control may begin on a rotor that turns at up to {speed} rpm, at set-point 0{told}."
+        ),
+        periods => format!(
+            "A start has all legs off until two Hall edges in one direction tell the angle, {} where the rotor stands; \
+             then control begins at up to {speed} rpm{told}.",
+            engineering(f64::from(periods) * spec.inverter.t_s, "s")
+        ),
+    }
+}
+
 /// Start-up and trips, with the drive's numbers.
 pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     let inverter = &spec.inverter;
@@ -94,10 +113,6 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     let precharge = match inverter.precharge_periods {
         0 => "no pre-charge follows".to_owned(),
         periods => format!("{periods} steps of pre-charge follow"),
-    };
-    let told = match inverter.bus {
-        BusSource::Fixed => "",
-        BusSource::Measured { .. } => " and with the bus voltage set by `set_bus`",
     };
     let mut lines = vec![
         String::new(),
@@ -108,10 +123,7 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             1_u32 << inverter.calibration_log2,
             amperes(inverter.offset_tolerance)
         ),
-        format!(
-            "Control may begin on a rotor that turns at up to {} rpm, at set-point 0{told}.",
-            start_rpm(spec, design)
-        ),
+        start(spec, design),
         format!(
             "A phase current above {} trips the drive.",
             engineering(inverter.trip_current, "A")

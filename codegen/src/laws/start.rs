@@ -40,6 +40,9 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// Greatest rotor speed, mechanical rad/s, at which control may begin at set-point 0 without a
 /// trip.
 ///
+/// A drive that models the EMF waits for the rotor's angle where it turns fast
+/// ([`Spec::start_periods`]), and knows the EMF then. For any other:
+///
 /// At the first command the EMF is unknown: no estimate yet, no speed from the Hall sensors. Later
 /// knowledge only helps, and a slow filter may never gain it. So the current is the closed loop's
 /// response to an EMF that appears at once and turns: for prediction without an EMF, one period of
@@ -54,6 +57,9 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let options = spec.controller.common();
     let most = (inverter.lowest_bus() / line).min(inverter.maximum_speed);
+    if spec.start_periods() > 0 {
+        return most;
+    }
     let turn = most * f64::from(motor.pole_pairs) * inverter.t_s;
     let filter = options.emf_filter;
     let estimates = options.emf == EmfSource::Estimated;

@@ -3,7 +3,9 @@
 //! Later stages read only these types; how a value was written, in which unit and where, ends at
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
-use crate::spec::{ControllerSpec, CurrentSensing, CurrentSensor, Reference, SensedPhases};
+use crate::spec::{
+    ControllerSpec, CurrentSensing, CurrentSensor, EmfSource, Reference, SensedPhases,
+};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// One drive: name, motor, inverter and controller.
@@ -47,8 +49,35 @@ impl Spec {
     }
 
     /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
-    /// than the largest current: e/|Z| with the fundamental of the EMF. 0 if it never takes more.
+    /// than the largest current. 0 if it never takes more.
     pub fn brake_periods(&self) -> u32 {
+        self.shorted_sector(self.inverter.max_current)
+            .map_or(0, |sector| (sector / self.inverter.t_s).ceil() as u32)
+    }
+
+    /// Control periods that a start waits at most for the rotor's angle: two sectors at the speed at
+    /// which the short-circuited motor takes half the largest current. Control without an angle, and
+    /// so without the EMF, adds no more than that to its set-point. 0 where the law does not model
+    /// the EMF, which then the angle does not give, or where no speed takes as much.
+    pub fn start_periods(&self) -> u16 {
+        let is_modelled = matches!(
+            self.controller.common().emf,
+            EmfSource::Model | EmfSource::Observer
+        );
+        let sector = self.shorted_sector(self.inverter.max_current / 2.0);
+        let top = f64::from(self.motor.pole_pairs) * self.inverter.maximum_speed;
+        match sector {
+            Some(sector) if is_modelled && FRAC_PI_3 / sector < top => {
+                let periods = 2.0 * (sector / self.inverter.t_s).ceil();
+                periods.min(f64::from(u16::MAX)) as u16
+            }
+            _ => 0,
+        }
+    }
+
+    /// Seconds of a sector at the speed at which the short-circuited motor takes this current, e/|Z|
+    /// with the fundamental of the EMF; `None` if it never does.
+    fn shorted_sector(&self, current: f64) -> Option<f64> {
         let MotorSpec {
             resistance,
             inductance,
@@ -57,14 +86,13 @@ impl Spec {
             pole_pairs,
             ..
         } = self.motor;
-        let (current, pairs) = (self.inverter.max_current, f64::from(pole_pairs));
+        let pairs = f64::from(pole_pairs);
         let constant = emf_constant * emf_shape.fundamental();
         let beyond = constant.powi(2) - (current * pairs * inductance).powi(2);
-        if beyond <= 0.0 {
-            return 0;
-        }
-        let omega_e = pairs * current * resistance / beyond.sqrt();
-        (FRAC_PI_3 / omega_e / self.inverter.t_s).ceil() as u32
+        (beyond > 0.0).then(|| {
+            let omega_e = pairs * current * resistance / beyond.sqrt();
+            FRAC_PI_3 / omega_e
+        })
     }
 
     /// Sector 1 to 6 by Hall code of which no sensor is inverted; 0 for invalid codes.

@@ -96,6 +96,9 @@ impl Spec {
             text.number("hall_glitches", inverter.hall_glitches);
         }
         text.number("brake_periods", self.brake_periods());
+        if self.start_periods() > 0 {
+            text.number("start_periods", self.start_periods());
+        }
         text.number("calibration_log2", inverter.calibration_log2);
         text.number("precharge_periods", inverter.precharge_periods);
     }

@@ -232,16 +232,30 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "if (supervisor->mode == HEXAGEN_MODE_CALIBRATE) {\n        rested",
         ),
         ("line", "sector + 1U);", "sector + 2U);"),
-        ("line", "supervisor->brake_direction = -1;", ""),
+        ("line", "follows(now, before) ? -1 : 0", "-1"),
+        ("line", "direction != 0 && direction", "direction"),
+        ("line", "direction == supervisor->turn_direction;", "true;"),
+        ("line", "countdown = limits->start_periods", "countdown = 1"),
         (
             "line",
-            "supervisor->brake_interval = supervisor->brake_age;",
+            "if (supervisor->countdown != 0U) {\n        return",
+            "if (false) {\n        return",
+        ),
+        ("line", "(void)is_last(supervisor);", ""),
+        (
+            "line",
+            "before_control(supervisor->countdown);\n        break",
+            "HEXAGEN_MODE_START;\n        break",
+        ),
+        (
+            "line",
+            "supervisor->turn_interval = supervisor->turn_age;",
             "",
         ),
         (
             "line",
-            "supervisor->brake_age + 1, limits",
-            "supervisor->brake_age + 2, limits",
+            "supervisor->turn_age + 1, limits",
+            "supervisor->turn_age + 2, limits",
         ),
     ];
     assert_eq!(unnoticed(TEST, &faults), []);
@@ -268,9 +282,10 @@ fn limits_that_contradict_each_other_do_not_compile() {
         "0x04236510",
         "0",
         "0",
+        "0",
         "65535",
     ];
-    let compiles = |arguments: [&str; 18]| {
+    let compiles = |arguments: [&str; 19]| {
         let folder = tempfile::tempdir().expect("a folder");
         let arguments = arguments.join(", ");
         let test = format!(
@@ -329,12 +344,13 @@ fn limits_that_contradict_each_other_do_not_compile() {
         "0",
         "0",
         "0",
+        "0",
         "65535",
     ];
     assert!(!compiles(wide));
     let sums = [
         "65535", "false", "0", "1", "1", "1", "9", "-1", "65534", "15", "20", "0", "0", "0", "0",
-        "0", "0", "65535",
+        "0", "0", "0", "65535",
     ];
     assert!(compiles(sums));
 }

@@ -6,27 +6,32 @@
 
 HEXAGEN_LIMITS(rising, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
     -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0, 0,
-    0x04236510, 5, 0, 65535);
+    0x04236510, 5, 0, 0, 65535);
 HEXAGEN_LIMITS(falling, 4095, true, 18, 2048, 1946, 2150, INT32_C(400000001),
     (INT32_C(1946) - 4095) * 262144, INT32_C(2150) * 262144, 0, 0, 5, 0, 0,
-    0x04236510, 0, 0, 65535);
+    0x04236510, 0, 0, 0, 65535);
 HEXAGEN_LIMITS(coarse, 1023, false, 0, 512, 0, 1023, 400, -INT32_C(1023), 1023, 15, 0, 0, 0, 0,
-    0x04236510, 7, 0, 65535);
+    0x04236510, 7, 0, 0, 65535);
 HEXAGEN_LIMITS(wide, 65535, false, 14, 32768, 32000, 33000, INT32_C(500000000),
     -INT32_C(33000) * 16384, (INT32_C(65535) - 32000) * 16384, 4, 3, 7, 0, 0,
-    0x04236510, 7, 0, 65535);
+    0x04236510, 7, 0, 0, 65535);
 /* Sensors 60 degrees apart, up to two samples bridged, a bus of 1000 to 3000 counts. */
 HEXAGEN_LIMITS(bridging, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
-    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 2, 2, 0x04236510, 5, 1000,
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 2, 2, 0x04236510, 5, 0, 1000,
     3000);
 HEXAGEN_LIMITS_OF(of_b_and_c, 4095, false, 18, 2048, 1946, 2150, INT32_C(400000001),
-    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0, 0, 0x04236510, 5, 0, 65535,
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 8, 20, 0, 0, 0, 0x04236510, 5, 0, 0, 65535,
     HEXAGEN_SENSED_BC, false, 2048, 1946, 2150);
 HEXAGEN_LIMITS_OF(of_c_and_a, 4095, false, 10, 2048, 1946, 2150, INT32_C(2000000),
-    -INT32_C(2195) * 1024, INT32_C(2202) * 1024, 8, 20, 0, 0, 0, 0x04236510, 5, 0, 65535,
+    -INT32_C(2195) * 1024, INT32_C(2202) * 1024, 8, 20, 0, 0, 0, 0x04236510, 5, 0, 0, 65535,
     HEXAGEN_SENSED_CA, true, 2000, 1900, 2202);
 HEXAGEN_LIMITS(loose, 4095, true, 3, 3000, 0, 4095, INT32_C(2147483647), -INT32_C(4095) * 8,
-    INT32_C(4095) * 8, 8, 1, 0, 0, 0, 0x04236510, 7, 0, 65535);
+    INT32_C(4095) * 8, 8, 1, 0, 0, 0, 0x04236510, 7, 0, 0, 65535);
+
+/* A start of at most nine periods. */
+HEXAGEN_LIMITS(starting, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 2, 0, 0, 0, 0, 0x04236510, 5, 9, 0,
+    65535);
 
 static const hexagen_limits *const all[] = { &rising, &falling, &coarse, &wide, &of_b_and_c,
     &of_c_and_a, &loose };
@@ -136,20 +141,65 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
         }                                                 \
     } while (0)
 
-/* A drive that brakes: what so many periods with a Hall code come to. */
-static int rests(hexagen_supervisor *supervisor, uint16_t hall, unsigned periods, hexagen_leg leg,
-    bool is_controlled, int32_t against)
+/* A drive that rests or brakes: what so many periods with a Hall code come to. */
+static int rests(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall,
+    unsigned periods, hexagen_leg leg, bool is_controlled, int32_t against)
 {
     const volatile int32_t set_point = 1;
     const hexagen_sample sample = hexagen_with_hall(2048, 2048, hall);
     for (unsigned period = 0; period < periods; period++) {
         hexagen_checked checked;
         hexagen_rested rested;
-        STATES(!hexagen_check(supervisor, all[0], &sample, &set_point, &checked));
-        rested = hexagen_rest(supervisor, all[0], &sample, &checked);
+        STATES(!hexagen_check(supervisor, limits, &sample, &set_point, &checked));
+        rested = hexagen_rest(supervisor, limits, &sample, &checked);
         STATES(rested.leg == leg && rested.is_controlled == is_controlled
             && rested.against == against);
     }
+    return 0;
+}
+
+/* A start whose codes, 0 at their end, are followed by control, and not before. */
+static int starts(const uint16_t *codes)
+{
+    hexagen_supervisor supervisor;
+    hexagen_start(&supervisor, &starting);
+    for (; *codes != 0U; codes++) {
+        STATES(supervisor.mode == HEXAGEN_MODE_START);
+        STATES(rests(&supervisor, &starting, *codes, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
+    }
+    STATES(supervisor.mode == HEXAGEN_MODE_RUN);
+    return 0;
+}
+
+/* A start ends behind two edges in one direction, or so many periods. */
+static int waits(void)
+{
+    static const uint16_t ends[][10] = { { 1, 1, 1, 1, 1, 1, 1, 1, 1, 0 }, { 1, 1, 5, 5, 4, 0 },
+        { 1, 3, 2, 0 }, { 1, 5, 1, 3, 0 }, { 1, 6, 2, 3, 0 },
+        { 1, 5, 6, 2, 3, 0 }, { 1, 5, 1, 5, 1, 5, 1, 5, 1, 0 } };
+    hexagen_supervisor supervisor;
+    for (unsigned place = 0; place < sizeof ends / sizeof ends[0]; place++) {
+        STATES(starts(ends[place]) == 0);
+    }
+    /* Braking and coasting go on with it: legs are off until it is over. */
+    hexagen_start(&supervisor, &starting);
+    STATES(rests(&supervisor, &starting, 1, 2, HEXAGEN_LEG_OFF, false, 0) == 0);
+    hexagen_coast(&supervisor);
+    STATES(rests(&supervisor, &starting, 5, 2, HEXAGEN_LEG_OFF, false, 0) == 0);
+    hexagen_brake(&supervisor);
+    STATES(rests(&supervisor, &starting, 5, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(rests(&supervisor, &starting, 4, 2, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_RUN);
+    /* A start that is interrupted goes on; calibration and a reset come before one. */
+    hexagen_start(&supervisor, &starting);
+    hexagen_coast(&supervisor);
+    STATES(hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_START);
+    hexagen_calibrate(&supervisor, &starting);
+    STATES(rests(&supervisor, &starting, 1, 4, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(supervisor.mode == HEXAGEN_MODE_START && supervisor.countdown == 9);
+    STATES(rests(&supervisor, &starting, 1, 9, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(supervisor.mode == HEXAGEN_MODE_RUN);
+    STATES(hexagen_reset(&supervisor, &starting) && supervisor.mode == HEXAGEN_MODE_START);
     return 0;
 }
 
@@ -160,26 +210,26 @@ static int brakes(void)
     hexagen_start(&supervisor, all[0]);
     hexagen_coast(&supervisor);
     STATES(supervisor.mode == HEXAGEN_MODE_COAST);
-    STATES(rests(&supervisor, 5, 9, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 5, 9, HEXAGEN_LEG_OFF, false, 0) == 0);
     STATES(hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_RUN);
     STATES(!hexagen_resume(&supervisor));
     hexagen_brake(&supervisor);
-    STATES(rests(&supervisor, 1, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
-    STATES(rests(&supervisor, 1, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
-    STATES(rests(&supervisor, 5, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
-    STATES(rests(&supervisor, 4, 3, HEXAGEN_LEG_OFF, true, 1) == 0);
-    STATES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
-    STATES(rests(&supervisor, 3, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
-    STATES(rests(&supervisor, 2, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    STATES(rests(&supervisor, all[0], 1, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 1, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 5, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 4, 3, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, all[0], 6, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, all[0], 3, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 2, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
     hexagen_brake(&supervisor);
-    STATES(rests(&supervisor, 6, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
-    STATES(rests(&supervisor, 6, 2, HEXAGEN_LEG_LOW, false, 0) == 0);
-    STATES(rests(&supervisor, 0, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 6, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    STATES(rests(&supervisor, all[0], 6, 2, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 0, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
     STATES(supervisor.fault == HEXAGEN_FAULT_HALL);
     hexagen_coast(&supervisor);
     hexagen_brake(&supervisor);
     STATES(!hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_TRIPPED);
-    STATES(hexagen_reset(&supervisor, all[0]) && supervisor.brake_direction == 0);
+    STATES(hexagen_reset(&supervisor, all[0]) && supervisor.turn_direction == 0);
     return 0;
 }
 
@@ -254,7 +304,7 @@ static hexagen_sample sample_of(
 
 int main(void)
 {
-    if (brakes() != 0 || bridges() != 0 || judges_the_bus() != 0) {
+    if (brakes() != 0 || waits() != 0 || bridges() != 0 || judges_the_bus() != 0) {
         return 1;
     }
     for (unsigned set = 0; set < sizeof all / sizeof all[0]; set++) {

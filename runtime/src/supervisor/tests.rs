@@ -37,6 +37,7 @@ const fn limits(adc_bits: u32, adc_inverted: bool, current_bits: u32) -> Limits 
         hall_glitches: 0,
         sectors: 0x0423_6510,
         brake_periods: 5,
+        start_periods: 0,
         bus_counts: [0, u16::MAX],
     }
 }
@@ -559,87 +560,115 @@ fn a_bus_voltage_beyond_its_counts_is_a_fault() {
 #[test]
 fn commands_are_accepted_in_their_modes_only() {
     let limits = limits(12, false, 17);
-    for mode in (0..6).map(Mode::from_number) {
-        let begun = Supervisor {
-            mode,
-            fault: (mode == Mode::Tripped).then_some(Fault::Hall),
-            countdown: 2,
-            offsets: [Word(123); 2],
-            sums: [Word(5); 2],
-            hall_prev: 3,
-            hall_gap: 1,
-            hall_glitches: 2,
-            stall_count: Word(4),
-            turn: TURN,
-        };
-        let mut supervisor = begun.clone();
-        let is_reset = supervisor.reset(&limits, &Sensors::AB);
-        let is_off = matches!(mode, Mode::Coast | Mode::Brake);
-        let is_ready = mode == Mode::Run || is_off;
-        assert_eq!(is_reset, is_ready || mode == Mode::Tripped);
-        let cleared = Supervisor {
-            offsets: [Word(123); 2],
-            ..Supervisor::new(&limits, &Sensors::AB)
-        };
-        assert_eq!(supervisor, if is_reset { cleared } else { begun.clone() });
-
-        let mut supervisor = begun.clone();
-        supervisor.calibrate(&limits);
-        let calibrates = Supervisor {
-            mode: Mode::Calibrate,
-            countdown: 16,
-            sums: [Word(0); 2],
-            ..begun.clone()
-        };
-        let is_ignored = mode == Mode::Tripped;
-        assert_eq!(
-            supervisor,
-            if is_ignored {
-                begun.clone()
-            } else {
-                calibrates
-            }
-        );
-
-        let mut supervisor = begun.clone();
-        supervisor.coast();
-        let mode_then = if is_ready { Mode::Coast } else { mode };
-        assert_eq!(
-            supervisor,
-            Supervisor {
-                mode: mode_then,
-                ..begun.clone()
-            }
-        );
-        let mut supervisor = begun.clone();
-        supervisor.brake();
-        let forgets = is_ready && mode != Mode::Brake;
-        let brakes = Supervisor {
-            mode: if is_ready { Mode::Brake } else { mode },
-            turn: if forgets { Turn::UNKNOWN } else { TURN },
-            ..begun.clone()
-        };
-        assert_eq!(supervisor, brakes);
-        let mut supervisor = begun.clone();
-        assert_eq!(supervisor.resume(), is_off);
-        let mode_then = if is_off { Mode::Run } else { mode };
-        assert_eq!(supervisor.mode, mode_then);
-
-        for precharge_periods in [3, 0] {
-            let limits = Limits {
-                precharge_periods,
-                ..limits
-            };
-            let mut supervisor = begun.clone();
-            supervisor.precharge(&limits);
-            let charges = Supervisor {
-                mode: Mode::Precharge,
-                countdown: 3,
-                ..begun.clone()
-            };
-            let is_taken = precharge_periods > 0 && matches!(mode, Mode::Run | Mode::Precharge);
-            assert_eq!(supervisor, if is_taken { charges } else { begun.clone() });
+    for mode in (0..7).map(Mode::from_number) {
+        for start_periods in [0, 7] {
+            accepts(
+                &Limits {
+                    start_periods,
+                    ..limits
+                },
+                mode,
+            );
         }
+    }
+}
+
+/// Each command, given in this mode with two periods left to count.
+fn accepts(limits: &Limits, mode: Mode) {
+    let begun = Supervisor {
+        mode,
+        fault: (mode == Mode::Tripped).then_some(Fault::Hall),
+        countdown: 2,
+        offsets: [Word(123); 2],
+        sums: [Word(5); 2],
+        hall_prev: 3,
+        hall_gap: 1,
+        hall_glitches: 2,
+        stall_count: Word(4),
+        turn: TURN,
+    };
+    let mut supervisor = begun.clone();
+    let is_reset = supervisor.reset(limits, &Sensors::AB);
+    let is_off = matches!(mode, Mode::Coast | Mode::Brake);
+    let is_ready = matches!(mode, Mode::Run | Mode::Start) || is_off;
+    assert_eq!(is_reset, is_ready || mode == Mode::Tripped);
+    let cleared = Supervisor {
+        offsets: [Word(123); 2],
+        ..Supervisor::new(limits, &Sensors::AB)
+    };
+    let starts = limits.start_periods > 0;
+    let first = if starts { Mode::Start } else { Mode::Run };
+    assert_eq!(
+        (cleared.mode, cleared.countdown),
+        (first, limits.start_periods)
+    );
+    assert_eq!(supervisor, if is_reset { cleared } else { begun.clone() });
+
+    let mut supervisor = begun.clone();
+    supervisor.calibrate(limits);
+    let calibrates = Supervisor {
+        mode: Mode::Calibrate,
+        countdown: 16,
+        sums: [Word(0); 2],
+        ..begun.clone()
+    };
+    let is_ignored = mode == Mode::Tripped;
+    let expected = if is_ignored {
+        begun.clone()
+    } else {
+        calibrates
+    };
+    assert_eq!(supervisor, expected);
+
+    for stopped in [Mode::Coast, Mode::Brake] {
+        let mut supervisor = begun.clone();
+        match stopped {
+            Mode::Coast => supervisor.coast(),
+            _ => supervisor.brake(),
+        }
+        // The rotor of a start, or of the other kind of stop, is known; that of control is not.
+        let turn = if mode == Mode::Run {
+            Turn::UNKNOWN
+        } else {
+            TURN
+        };
+        let stops = Supervisor {
+            mode: stopped,
+            turn,
+            ..begun.clone()
+        };
+        assert_eq!(supervisor, if is_ready { stops } else { begun.clone() });
+    }
+    for countdown in [2, 0] {
+        let mut supervisor = Supervisor {
+            countdown,
+            ..begun.clone()
+        };
+        assert_eq!(supervisor.resume(), is_off);
+        // What is left of a start goes on.
+        let resumed = if countdown > 0 {
+            Mode::Start
+        } else {
+            Mode::Run
+        };
+        assert_eq!(supervisor.mode, if is_off { resumed } else { mode });
+    }
+
+    for precharge_periods in [3, 0] {
+        let limits = Limits {
+            precharge_periods,
+            ..*limits
+        };
+        let mut supervisor = begun.clone();
+        supervisor.precharge(&limits);
+        let charges = Supervisor {
+            mode: Mode::Precharge,
+            countdown: 3,
+            ..begun.clone()
+        };
+        let may_begin = matches!(mode, Mode::Run | Mode::Start | Mode::Precharge);
+        let is_taken = precharge_periods > 0 && may_begin;
+        assert_eq!(supervisor, if is_taken { charges } else { begun.clone() });
     }
 }
 
@@ -726,7 +755,7 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
     assert_eq!(rests(&mut supervisor, &limits, 4), [forward; 3]);
     assert_eq!(rests(&mut supervisor, &limits, 6), [forward; 4]);
     // A sector that is skipped tells no direction; one back does.
-    assert_eq!(rests(&mut supervisor, &limits, 3), [forward; 4]);
+    assert_eq!(rests(&mut supervisor, &limits, 3), [unknown; 4]);
     assert_eq!(rests(&mut supervisor, &limits, 2), [backward; 4]);
     assert_eq!(
         rests(&mut supervisor, &limits, 6),
@@ -747,6 +776,61 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
     supervisor.brake();
     assert_eq!(rests(&mut supervisor, &always, 1), [low; 9]);
     assert_eq!(rests(&mut supervisor, &always, 5), [low; 9]);
+}
+
+/// A start of at most nine periods, which two Hall edges in one direction end.
+#[test]
+fn a_start_ends_behind_two_edges_in_one_direction_or_so_many_periods() {
+    let limits = Limits {
+        start_periods: 9,
+        ..limits(12, false, 17)
+    };
+    let off = Rest::Legs(LegState::Off);
+    let ends_with = |codes: &[u8]| {
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+        for (period, &hall) in (1..).zip(codes) {
+            assert_eq!(supervisor.status().mode, Mode::Start, "{codes:?}, {period}");
+            assert_eq!(rests(&mut supervisor, &limits, hall), [off]);
+        }
+        assert_eq!(supervisor.status().mode, Mode::Run, "{codes:?}");
+    };
+    // A rotor that stands, one that turns forward, backward, and one that turns round.
+    ends_with(&[1; 9]);
+    ends_with(&[1, 1, 5, 5, 4]);
+    ends_with(&[1, 3, 2]);
+    ends_with(&[1, 5, 1, 3]);
+    // A skipped sector tells no direction; a rotor that swings about an edge ends no start before
+    // its time.
+    ends_with(&[1, 6, 2, 3]);
+    ends_with(&[1, 5, 6, 2, 3]);
+    ends_with(&[1, 5, 1, 5, 1, 5, 1, 5, 1]);
+
+    // Braking and coasting go on with it: legs are off until it is over.
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+    assert_eq!(rests(&mut supervisor, &limits, 1), [off; 2]);
+    supervisor.coast();
+    assert_eq!(rests(&mut supervisor, &limits, 5), [off; 2]);
+    supervisor.brake();
+    let forward = Rest::Against(Word(1));
+    assert_eq!(rests(&mut supervisor, &limits, 5), [off; 1]);
+    assert_eq!(rests(&mut supervisor, &limits, 4), [forward; 2]);
+    // Control follows without another start.
+    assert!(supervisor.resume());
+    assert_eq!(supervisor.status().mode, Mode::Run);
+    supervisor.coast();
+    assert!(supervisor.resume());
+    assert_eq!(supervisor.status().mode, Mode::Run);
+
+    // A fault ends a start; calibration and pre-charge come before one.
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+    rests::<1>(&mut supervisor, &limits, 7);
+    assert_eq!(supervisor.status().fault, Some(Fault::Hall));
+    let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+    supervisor.calibrate(&limits);
+    rests::<19>(&mut supervisor, &limits, 1);
+    assert_eq!(supervisor.status().mode, Mode::Start);
+    assert_eq!(rests(&mut supervisor, &limits, 1), [off; 9]);
+    assert_eq!(supervisor.status().mode, Mode::Run);
 }
 
 /// A planted variant of limits.

@@ -86,8 +86,8 @@ pub struct RatedPoint {
 pub enum Limit {
     /// The bus voltage.
     BusVoltage,
-    /// Control begins on a rotor that is too fast.
-    StartOnFastRotor,
+    /// The trip level.
+    Trip,
     /// The angle that passes in a control period.
     ControlPeriod,
 }
@@ -123,7 +123,7 @@ impl RatedPoint {
     /// What limits a drive that is not right here.
     pub fn limit(&self) -> Limit {
         if self.tripped.is_some() {
-            Limit::StartOnFastRotor
+            Limit::Trip
         } else if self.saturated_pct.is_some_and(|share| share > SATURATED) {
             Limit::BusVoltage
         } else {

@@ -29,6 +29,7 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         hall_glitches,
         sectors,
         brake_periods,
+        start_periods,
         bus_counts,
         sensors: _,
     } = *limits;
@@ -47,6 +48,7 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         hall_glitches,
         sectors,
         brake_periods,
+        start_periods,
         bus_counts,
     }
 }

@@ -38,11 +38,21 @@ static int has_offsets(int32_t adc_a, int32_t adc_b)
     return drive.supervisor.offset_a == adc_a * unit && drive.supervisor.offset_b == adc_b * unit;
 }
 
+/* A start with a rotor that stands, which takes as long as each other one. */
+static int starts(void)
+{
+    static int periods;
+    const int done = steps(10000, HEXAGEN_MODE_START, HEXAGEN_LEG_OFF, 2040, 2050);
+    periods = (periods == 0) ? done : periods;
+    return done > 1 && done == periods;
+}
+
 /* A whole start-up with these offsets: the samples of pre-charge and control are others. */
 static int starts_up(uint16_t adc_a, uint16_t adc_b)
 {
     return steps(16, HEXAGEN_MODE_CALIBRATE, HEXAGEN_LEG_OFF, adc_a, adc_b) == 16 && has_offsets(adc_a, adc_b)
         && steps(4, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2030, 2060) == 4 && has_offsets(adc_a, adc_b)
+        && starts() && has_offsets(adc_a, adc_b)
         && steps(40, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2040, 2050) == 40 && has_offsets(adc_a, adc_b);
 }
 
@@ -59,7 +69,7 @@ int main(void)
     hub_init(&drive);
     unit = drive.supervisor.offset_a / 2048;
     EXPECT(has_offsets(2048, 2048));
-    EXPECT(is_running());
+    EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_START && starts() && is_running());
     hub_calibrate(&drive);
     EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_CALIBRATE);
     EXPECT(!is_running());
@@ -100,12 +110,13 @@ int main(void)
     EXPECT(drive.current > 0);
     hub_reset(&drive);
     EXPECT(drive.current == 0 && !hub_trip(&drive, &record));
-    EXPECT(is_running() && hub_status(&drive).fault == HEXAGEN_FAULT_NONE);
+    EXPECT(!is_running() && hub_status(&drive).fault == HEXAGEN_FAULT_NONE);
+    EXPECT(starts() && is_running());
     EXPECT(steps(40, HEXAGEN_MODE_RUN, HEXAGEN_LEG_PULSED, 2048, 2028) == 40 && has_offsets(2048, 2028));
     hub_precharge(&drive);
     EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_PRECHARGE);
     EXPECT(steps(4, HEXAGEN_MODE_PRECHARGE, HEXAGEN_LEG_LOW, 2048, 2028) == 4);
-    EXPECT(is_running());
+    EXPECT(starts() && is_running());
 
     /* Off on purpose, without a fault; then a rotor that stands is shorted as soon as it is known to. */
     hub_coast(&drive);

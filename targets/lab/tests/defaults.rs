@@ -7,21 +7,14 @@ use hexagen_tests::random_motor::RandomMotor;
 use rayon::prelude::*;
 use std::env;
 
-/// Points at which a default drive is not right: motor, speed in percent, whether in braking alone.
-/// Control begins at the demanded torque, whatever the speed.
-const LIMITED: [(&str, u32, bool); 9] = [
+/// Points at which a default drive is not right: motor, speed in percent. Control begins at the
+/// demanded torque, whatever the speed.
+const LIMITED: [(&str, u32); 3] = [
     // The bus is too low for this motor's EMF.
-    ("anaheim-bly341s", 100, false),
+    ("anaheim-bly341s", 100),
     // A period is as long as the current's rise.
-    ("br2804-1700kv", 100, false),
-    // Control begins on a rotor that is too fast, or too fast for the whole braking torque.
-    ("velineon-3500", 100, false),
-    ("hurst-long", 100, true),
-    ("ipower-gbm2804h", 60, true),
-    ("ipower-gbm2804h", 100, true),
-    ("linix-45zwn24-40", 100, true),
-    ("odrive-d6374-150kv", 100, true),
-    ("tekin-redline-4600kv", 100, true),
+    ("br2804-1700kv", 100),
+    ("velineon-3500", 100),
 ];
 
 /// The points at which a drive is not right: speed in percent, negative backward, and 1 for
@@ -55,18 +48,14 @@ fn every_library_motor_is_right_by_default() {
         .par_iter()
         .flat_map_iter(|(name, drive)| {
             let found = wrong(drive);
-            let limits = |speed: u32, mode: i32| {
-                LIMITED.iter().any(|&(limited, at, braking_only)| {
-                    limited == *name && at == speed && (!braking_only || mode == -1)
-                })
-            };
-            for (_, at, _) in LIMITED.iter().filter(|(limited, ..)| limited == name) {
+            let limits = |speed: u32| LIMITED.contains(&(*name, speed));
+            for (_, at) in LIMITED.iter().filter(|(limited, ..)| limited == name) {
                 let is_found = found.iter().any(|(point, ..)| point.speed_pct == *at);
                 assert!(is_found, "{name} is right at {at} % now");
             }
             found
                 .into_iter()
-                .filter(|(point, _, mode)| !limits(point.speed_pct, *mode))
+                .filter(|(point, ..)| !limits(point.speed_pct))
                 .map(|(point, speed, mode)| format!("{name} {speed} % {mode}: {point:?}"))
                 .collect::<Vec<_>>()
         })
@@ -80,7 +69,20 @@ const DRAWN: [usize; 2] = [20, 200];
 /// Electrical degrees in a control period at rated speed, up to which a drive is right.
 const FASTEST: f64 = 15.0;
 
-/// Nearly all points that neither end at the bus nor begin on a rotor that is too fast are right.
+/// Greatest change of the current in a control period with the bus across two phases, over the rated
+/// current. Beyond it the pulses' ripple is so large, and decays so fast, that the mean of the
+/// current is not its sample, whatever the control does.
+const SWING: f64 = 5.0;
+
+/// That change.
+fn swing(drive: &Prepared) -> f64 {
+    let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+    let rise = inverter.v_bus * inverter.t_s / (2.0 * motor.inductance);
+    rise / motor.rated_current
+}
+
+/// Nearly all points are right that neither end at the bus nor are of motors whose current swings too
+/// far in a period.
 #[test]
 fn random_motors_are_right_by_default() {
     let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
@@ -95,23 +97,29 @@ fn random_motors_are_right_by_default() {
         (is_timed && degrees_per_period(&drive.spec) <= FASTEST).then_some(drive)
     });
     let drawn: Vec<Prepared> = drawn.take(wanted).collect();
+    let swinging = drawn.iter().filter(|drive| swing(drive) > SWING).count();
+    println!("{swinging} motors of {} swing", drawn.len());
+    assert!(5 * swinging <= drawn.len());
     let points = 16 * drawn.len();
-    let wrong: Vec<(String, RatedPoint)> = drawn
+    let wrong: Vec<(String, RatedPoint, bool)> = drawn
         .par_iter()
         .flat_map_iter(|drive| {
             let degrees = degrees_per_period(&drive.spec);
             wrong(drive).into_iter().map(move |(point, speed, mode)| {
                 let at = format!("{} {degrees:.1} deg {speed} % {mode}", drive.motor);
-                (at, point)
+                let is_known = point.limit() != Limit::ControlPeriod || swing(drive) > SWING;
+                (at, point, is_known)
             })
         })
         .collect();
-    let is_known = |point: &RatedPoint| point.limit() != Limit::ControlPeriod;
-    let (known, unknown): (Vec<_>, Vec<_>) = wrong.iter().partition(|(_, point)| is_known(point));
+    let trips = wrong.iter().filter(|(_, point, _)| point.tripped.is_some());
+    let tripping: Vec<_> = trips.map(|(at, ..)| at).collect();
+    assert!(tripping.is_empty(), "{tripping:?}");
+    let (known, unknown): (Vec<_>, Vec<_>) = wrong.iter().partition(|(.., known)| *known);
     println!("{} of {points} points: {known:#?}", known.len());
-    assert!(3 * known.len() < points, "{} of {points}", known.len());
+    assert!(6 * known.len() < points, "{} of {points}", known.len());
     assert!(
-        40 * unknown.len() < points,
+        30 * unknown.len() < points,
         "{} of {points}: {unknown:#?}",
         unknown.len()
     );

@@ -33,7 +33,13 @@ fn fixed_and_ideal_agree_in_all_figures_of_rows_with_a_modulator_and_in_the_torq
                     if decides && figure.figure != "mean torque" {
                         continue;
                     }
-                    let most = if decides { 2.0 } else { 1.0 };
+                    // An extreme can come of one sample, whose count of the edge timer is rounded.
+                    let is_extreme = figure.figure == "torque ripple, peak to peak";
+                    let most = match (decides, is_extreme) {
+                        (true, _) => 2.0,
+                        (false, true) => 3.0,
+                        (false, false) => 1.0,
+                    };
                     assert!(
                         figure.of_allowance <= most,
                         "{variant} at {rpm} rpm: {figure:?}"

@@ -2,9 +2,9 @@
 
 use hexagen_codegen::interface::PublicValue;
 use hexagen_codegen::spec::BusSource;
-use hexagen_lab::closed_loop::ClosedLoop;
+use hexagen_lab::closed_loop::{ClosedLoop, Recorder, Step, Trip};
 use hexagen_lab::engine::{Model, MotorSource, Prepared, library, plant_of, prepare, run_of};
-use hexagen_lab::plant::Plant;
+use hexagen_lab::plant::{Observer, Plant, Segment};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -198,7 +198,109 @@ fn no_drive_trips_below_its_stated_speed() {
     let count = |n: usize| outcomes.iter().filter(|(_, flags)| flags[n]).count();
     let (judged, tripping) = (count(1), count(2));
     assert!(
-        judged >= 100 && 4 * tripping > judged,
+        judged >= 100 && 5 * tripping > judged,
         "{tripping} of {judged} trip at 1.3 times their speed"
     );
+}
+
+/// Greatest phase current of a run, ampere.
+#[derive(Default)]
+struct Greatest(f64);
+
+impl Observer for Greatest {
+    fn segment(&mut self, _: &Segment) {}
+}
+
+impl Recorder for Greatest {
+    fn period(&mut self, step: &Step<'_>) {
+        let currents = step.truth.currents.map(f64::abs);
+        self.0 = currents.into_iter().fold(self.0, f64::max);
+    }
+}
+
+/// Laws that model the EMF.
+const MODELLING: [&str; 3] = ["pdcc", "pi-pwm", "p-pwm"];
+
+/// Speeds at which control begins with the rated torque: shares of the greatest stated one, and of
+/// that above which a start waits for the rotor's angle.
+const SHARES: [(f64, bool); 5] = [
+    (1.0, false),
+    (0.5, false),
+    (0.1, false),
+    (1.05, true),
+    (0.95, true),
+];
+
+/// Speeds beyond which the bus does not hold the rated current: the EMF is as large as it.
+const BEYOND_THE_BUS: [&str; 3] = [
+    "anaheim-bly341s pdcc, bus Fixed, trip None at 3300 rpm, -1",
+    "velineon-3500 pdcc, bus Fixed, trip None at 37513 rpm, 1",
+    "velineon-3500 pdcc, bus Fixed, trip None at -37513 rpm, 1",
+];
+
+/// The greatest current of a start with the rated torque, over its set-point or what flows later,
+/// from the worst angle; or the trip.
+fn overshoot(drive: &Prepared, rpm: f64, sign: f64) -> Result<f64, Trip> {
+    let spec = &drive.spec;
+    let omega = rpm * TAU / 60.0;
+    let torque = sign * drive.demand();
+    let set_point = drive.set_point(torque);
+    let mut worst = 0.0_f64;
+    for angle in [0.07, 1.7, 3.3, 5.0] {
+        let plant = Plant::new(plant_of(spec), angle, omega).expect("a plant");
+        let engine = drive.engine(Model::Fixed, set_point);
+        let run = run_of(spec, omega, torque);
+        let mut closed = ClosedLoop::new(plant, engine, run.delay);
+        let (settling, measured) = run.periods(&plant_of(spec));
+        let (mut begin, mut later) = (Greatest::default(), Greatest::default());
+        closed.run(settling, &mut begin);
+        closed.run(measured.min(2_000), &mut later);
+        if let Some(trip) = closed.tripped() {
+            return Err(trip);
+        }
+        worst = worst.max(begin.0 / later.0.max(set_point.current));
+    }
+    Ok(worst)
+}
+
+#[test]
+fn a_start_with_the_rated_torque_takes_at_most_half_of_it_more() {
+    let motors = library();
+    let cases = motors
+        .iter()
+        .flat_map(|motor| MODELLING.map(|law| (motor.name, law)));
+    let cases: Vec<_> = cases.collect();
+    let outcomes: Vec<(String, Result<f64, Trip>)> = cases
+        .par_iter()
+        .filter_map(|&(motor, law)| {
+            let case = Case::new(motor, law, Bus::Fixed, None)?;
+            let spec = &case.drive.spec;
+            let waited = f64::from(spec.start_periods()) / 2.0 * spec.inverter.t_s;
+            let from = 60.0 / (6.0 * waited * f64::from(spec.motor.pole_pairs));
+            Some((case, from))
+        })
+        .flat_map_iter(|(case, from)| {
+            let runs = SHARES.map(|(share, of_wait)| {
+                let rpm = share * if of_wait { from } else { case.stated() };
+                [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0)].map(|(turn, mode)| {
+                    let name = format!("{} at {:.0} rpm, {mode}", case.name, turn * rpm);
+                    (name, overshoot(&case.drive, turn * rpm, turn * mode))
+                })
+            });
+            runs.into_iter().flatten().collect::<Vec<_>>()
+        })
+        .collect();
+    let wrong: Vec<_> = outcomes
+        .iter()
+        .filter(|(_, outcome)| !matches!(outcome, Ok(ratio) if *ratio <= 1.5))
+        .map(|(name, outcome)| (&name[..], outcome))
+        .filter(|(name, _)| !BEYOND_THE_BUS.contains(name))
+        .collect();
+    let greatest = outcomes.iter().filter_map(|(_, outcome)| outcome.ok());
+    println!(
+        "{} starts, {:.2}",
+        outcomes.len(),
+        greatest.fold(0.0, f64::max)
+    );
+    assert!(wrong.is_empty(), "{} {wrong:#?}", outcomes.len());
 }

@@ -151,6 +151,9 @@ pub struct Inverter {
     /// Periods of a sector at the speed up to which a short circuit brakes; 0: at every speed.
     #[serde(default)]
     pub brake_periods: u32,
+    /// Periods that a start waits at most for the rotor's angle; 0: none.
+    #[serde(default)]
+    pub start_periods: u32,
     /// Binary logarithm of the number of calibration samples.
     pub calibration_log2: u32,
     /// Periods of bootstrap pre-charge; 0: none.

@@ -5,7 +5,7 @@ use hexagen_codegen::interface::{Limits, SensedPhases, Sensor};
 /// A fault: name and change.
 type Fault = (&'static str, fn(&mut Limits));
 
-const FAULTS: [Fault; 30] = [
+const FAULTS: [Fault; 32] = [
     ("a count more", |limits| limits.adc_max += 1),
     ("a count less", |limits| limits.adc_max -= 1),
     ("the other way round", |limits| {
@@ -82,6 +82,12 @@ const FAULTS: [Fault; 30] = [
     }),
     ("short circuit up to a higher speed", |limits| {
         limits.brake_periods = (limits.brake_periods - 1).max(0);
+    }),
+    ("a start that waits a period more", |limits| {
+        limits.start_periods += 1;
+    }),
+    ("a start that waits a period less", |limits| {
+        limits.start_periods = limits.start_periods.saturating_sub(1);
     }),
 ];
 

@@ -107,10 +107,18 @@ fn sample(hall: u8) -> Sample {
     Sample::with_hall([2048, 2048], hall)
 }
 
+/// A rotor that stands, until a start is over.
+fn starts<C: Control<Command = Legs>>(drive: &mut Drive<C>) {
+    while drive.status().mode == Mode::Start {
+        assert_eq!(drive.step(&sample(1)), Legs::OFF);
+    }
+}
+
 /// Firmware code independent of the motor.
 fn run<C: Control<Command = Legs>>(drive: &mut Drive<C>, milliamperes: i32) -> [LegState; 3] {
     drive.set_current_ma(milliamperes);
     let mut states = [LegState::Off; 3];
+    starts(drive);
     for _ in 0..8 {
         states = drive.step(&sample(1)).state();
     }
@@ -159,7 +167,7 @@ fn halves<C: Control<Command = Legs>>() {
     assert_eq!(set_point.status().mode, Mode::Precharge, "{}", C::NAME);
     interrupt.strikes(1);
     assert_eq!(interrupt.legs, Legs::LOW, "{}", C::NAME);
-    (0..100).for_each(|_| interrupt.strikes(1));
+    (0..5_000).for_each(|_| interrupt.strikes(1));
     // A measured bus voltage has not been set yet.
     let status = set_point.status();
     assert_eq!(status.mode, Mode::Run, "{}", C::NAME);
@@ -243,6 +251,7 @@ fn current_and_bus_reach_the_step() {
     let mut drive = Drive::<FrontHub>::new();
     let mut told = |counts| {
         drive.reset();
+        starts(&mut drive);
         drive.set_bus(counts);
         drive.set_current_ma(1_000);
         let compare = drive.step(&sample(1)).compare();
@@ -273,9 +282,12 @@ fn a_reset_sets_the_set_point_to_0() {
     assert!(!idle(rear.step(&sample(1))));
     // With a speed loop the set-point is the speed; the current limit is kept.
     let mut conveyor = Drive::<Conveyor>::new();
+    assert_eq!(conveyor.status().mode, Mode::Start, "of a new drive, too");
+    starts(&mut conveyor);
     conveyor.set_speed_rpm(1_000);
     assert!(!idle(conveyor.step(&sample(1))));
     conveyor.reset();
+    starts(&mut conveyor);
     assert!(idle(conveyor.step(&sample(1))));
     conveyor.set_speed(I16F16::lit("1000"));
     assert!(!idle(conveyor.step(&sample(1))));

@@ -332,7 +332,7 @@ impl Drive<'_> {
         body.push('\n');
         Method {
             doc: doc(&[
-                "Initialises a drive: it controls currents from its first period on, with set-point 0 and nominal current offsets.",
+                "Initialises a drive: it controls currents at set-point 0 with nominal current offsets, behind a start in which it finds the angle of a turning rotor, where it needs that.",
                 "Before any other call. If the current offsets or the inverter's bootstrap capacitors require it, call `calibrate()` before the first period.",
             ]),
             head: format!("void {}({})", self.names.public("init"), self.drive()),
@@ -510,7 +510,7 @@ impl Drive<'_> {
                 "reset",
                 &[
                     "Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.",
-                    "Ignored while calibrating and pre-charging. Control follows directly, without start-up. With a speed loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current limit.",
+                    "Ignored while calibrating and pre-charging. A start follows, without calibration and pre-charge. With a speed loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current limit.",
                 ],
                 reset,
             ),
@@ -534,7 +534,7 @@ impl Drive<'_> {
                 "coast",
                 &[
                     "Turns all legs off on purpose, without a fault, until `resume()` or a reset.",
-                    "Above the speed at which the EMF reaches the bus voltage the diodes still brake the motor into the bus. Ignored when tripped and in start-up.",
+                    "Above the speed at which the EMF reaches the bus voltage the diodes still brake the motor into the bus. Ignored when tripped, calibrating and pre-charging.",
                 ],
                 lines(&["hexagen_coast(&drive->supervisor);"]),
             ),
@@ -542,7 +542,7 @@ impl Drive<'_> {
                 "brake",
                 &[
                     "Slows the rotor down until `resume()` or a reset: all lower switches on where the motor takes no more than `max_current` that way;",
-                    "above that speed this current against the rotation, with a speed loop speed 0 within the current that is set, into the bus. Ignored when tripped and in start-up.",
+                    "above that speed this current against the rotation, with a speed loop speed 0 within the current that is set, into the bus. Ignored when tripped, calibrating and pre-charging.",
                 ],
                 lines(&["hexagen_brake(&drive->supervisor);"]),
             ),
@@ -675,7 +675,7 @@ fn limits_of(limits: &Limits) -> (&'static str, Vec<(String, &'static str)>) {
 }
 
 /// The limits with their names, in the order of the runtime's macro.
-fn arguments(limits: &Limits) -> [(String, &'static str); 18] {
+fn arguments(limits: &Limits) -> [(String, &'static str); 19] {
     let [least, most] = limits.offsets;
     let [low, high] = limits.currents;
     [
@@ -695,6 +695,7 @@ fn arguments(limits: &Limits) -> [(String, &'static str); 18] {
         (format!("{}", limits.hall_glitches), "hall_glitches"),
         (format!("UINT32_C({:#010x})", limits.sectors), "sectors"),
         (typed_number(limits.brake_periods), "brake_periods"),
+        (format!("{}", limits.start_periods), "start_periods"),
         (format!("{}", limits.bus_counts[0]), "bus_least"),
         (format!("{}", limits.bus_counts[1]), "bus_most"),
     ]

@@ -199,6 +199,7 @@ fn limits_of(limits: &Limits) -> Source {
     let hall_glitches = n(limits.hall_glitches.into());
     let sectors = n(limits.sectors.into());
     let brake = n(limits.brake_periods.into());
+    let start = n(limits.start_periods.into());
     let [bus_least, bus_most] = limits.bus_counts.map(|count| n(count.into()));
     quote! {
         Limits {
@@ -216,6 +217,7 @@ fn limits_of(limits: &Limits) -> Source {
             hall_glitches: #hall_glitches,
             sectors: #sectors,
             brake_periods: #brake,
+            start_periods: #start,
             bus_counts: [#bus_least, #bus_most],
         }
     }

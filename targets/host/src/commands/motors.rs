@@ -101,7 +101,7 @@ fn verdict(motor: &LibraryMotor) -> &'static str {
     match motor.limit {
         _ if motor.is_right => "yes",
         Some(Limit::BusVoltage) => "bus voltage",
-        Some(Limit::StartOnFastRotor) => "trips at start",
+        Some(Limit::Trip) => "trips",
         Some(Limit::ControlPeriod) => "control period",
         None => "not generated",
     }

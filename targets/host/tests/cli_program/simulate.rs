@@ -292,7 +292,10 @@ fn a_percentage_of_nothing_is_absent() {
 #[test]
 fn a_free_shaft_tells_the_speed_that_it_reached() {
     // 1 Nm against 0.5 Nm: 100 rad/s^2 for 50 ms of settling and 150 ms of measurement.
+    // Of the laws that wait for no angle, so that the torque acts from the beginning.
     let free = [
+        "--controller",
+        "pdcc:emf=estimated",
         "--rpm",
         "600",
         "--torque",
@@ -319,7 +322,7 @@ fn a_free_shaft_tells_the_speed_that_it_reached() {
         (&Value::Null, &Value::Null)
     );
     let said = run(["simulate", PAPER].iter().chain(&free));
-    assert!(said.stdout.contains("free shaft: 714.9"), "{}", said.stdout);
+    assert!(said.stdout.contains("free shaft: 719"), "{}", said.stdout);
 }
 
 #[test]
@@ -481,7 +484,11 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
         assert!(said.stderr.contains("tripped"), "{}", said.stderr);
         let result = said.json_whatever_the_code();
         let trip = &result["tripped"];
-        assert_eq!(trip["fault"], "over_current", "{trip}");
+        let is_of_currents = |trip: &Value| {
+            let fault = trip["fault"].as_str().expect("a fault");
+            ["over_current", "adc_range"].contains(&fault)
+        };
+        assert!(is_of_currents(trip), "{trip}");
         let time = number(trip, "time_s");
         assert!(time > 0.0 && time < 0.1, "{trip}");
         assert!((number(trip, "rpm") - 1500.0).abs() < 1e-6, "{trip}");
@@ -498,7 +505,7 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
         assert_eq!(result["limit_rpm"], Value::Null);
         assert_eq!(result["curve"], serde_json::json!([]), "{result}");
         assert_eq!(result["lost"], Value::Null);
-        assert_eq!(result["tripped"]["fault"], "over_current", "{result}");
+        assert!(is_of_currents(&result["tripped"]), "{result}");
         assert!((number(&result["tripped"], "rpm") - 400.0).abs() < 1e-6);
     }
     let said = run(["simulate", PAPER, "--rpm", "1500", "--scale-l", "0.1"]);

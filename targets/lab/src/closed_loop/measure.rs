@@ -37,6 +37,9 @@ pub struct RunOptions {
     pub commutation_threshold: f64,
     /// Electrical start angles in radians; each is a run of its own.
     pub starts: Vec<f64>,
+    /// Seconds that a drive with a rotor at standstill waits for its angle before it settles. (Where the
+    /// rotor turns, half a turn of settling gives the angle.)
+    pub wait: f64,
     /// Target of a speed loop; `None` if the speed is held or free.
     pub aim: Option<Aim>,
 }
@@ -59,6 +62,7 @@ impl RunOptions {
             delay: Delay::OnePeriod,
             commutation_threshold: 0.5,
             starts: STARTS.to_vec(),
+            wait: 0.0,
             aim: None,
         }
     }
@@ -72,7 +76,7 @@ impl RunOptions {
             let measured = turn * most.clamp(1.0, MEASURED_TURNS);
             (SETTLING.max(SETTLING_TURNS * turn), measured)
         } else {
-            (SETTLING, STANDSTILL)
+            (self.wait + SETTLING, STANDSTILL)
         };
         let settling = self.aim.map_or(settling, |aim| settling.max(aim.within));
         (

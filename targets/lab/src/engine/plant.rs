@@ -63,6 +63,7 @@ pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
             Delay::OnePeriod
         },
         commutation_threshold: controller.commutation_threshold,
+        wait: f64::from(spec.start_periods()) * spec.inverter.t_s,
         ..RunOptions::new(omega_m, torque.clamp(-reach, reach) / per_ampere)
     }
 }

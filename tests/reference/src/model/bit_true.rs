@@ -136,6 +136,7 @@ impl<W: Word> BitTrue<W> {
             .limits
             .adc_offset
             .map(|offset| word(offset * model.k.count));
+        model.state.supervisor.start(&model.limits);
         Ok(model)
     }
 
@@ -191,6 +192,7 @@ impl<W: Word> BitTrue<W> {
                 offset: self.state.offset,
                 ..State::default()
             };
+            self.state.supervisor.start(&self.limits);
         }
     }
 

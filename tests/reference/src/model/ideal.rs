@@ -153,6 +153,7 @@ impl Ideal {
             trace: Trace::default(),
         };
         ideal.state.offset = ideal.limits.adc_offset;
+        ideal.state.supervisor.start(&ideal.limits);
         Ok(ideal)
     }
 
@@ -198,6 +199,7 @@ impl Ideal {
                 offset: self.state.offset,
                 ..PhysicalState::default()
             };
+            self.state.supervisor.start(&self.limits);
         }
     }
 

@@ -35,6 +35,8 @@ pub enum Mode {
     Coast = 4,
     /// Slowing the rotor down.
     Brake = 5,
+    /// Waiting for the rotor's angle, all legs off.
+    Start = 6,
 }
 
 impl Mode {
@@ -46,6 +48,7 @@ impl Mode {
             2 => Self::Precharge,
             4 => Self::Coast,
             5 => Self::Brake,
+            6 => Self::Start,
             _ => Self::Tripped,
         }
     }
@@ -104,6 +107,8 @@ pub struct Limits {
     pub hall_inverted: u8,
     /// Periods of a sector up to whose speed a short circuit brakes.
     pub brake_periods: f64,
+    /// Periods that a start waits at most for the rotor's angle.
+    pub start_periods: f64,
     /// Sector by Hall code.
     pub sectors: [usize; 8],
 }
@@ -145,6 +150,7 @@ impl Limits {
             hall_glitches: f64::from(inverter.hall_glitches),
             hall_inverted: spec.motor.hall_inverted(),
             brake_periods: f64::from(inverter.brake_periods),
+            start_periods: f64::from(inverter.start_periods),
             sectors: hall_sectors(&spec.motor),
         })
     }
@@ -279,11 +285,11 @@ pub struct Supervisor<W = f64> {
     /// Samples since then, bridged, and all that were.
     pub hall_gap: W,
     pub hall_glitches: W,
-    /// Rotation since braking began.
+    /// Rotation since control ended or the drive was made.
     pub turn: Turn<W>,
 }
 
-/// Rotation of the rotor by the Hall edges since braking began.
+/// Rotation of the rotor by the Hall edges since control ended or the drive was made.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Turn<W> {
     /// Hall code of the last period; 0 before the first.
@@ -292,8 +298,19 @@ pub struct Turn<W> {
     pub age: W,
     /// Periods between the last two edges.
     pub interval: W,
-    /// 1 forward, -1 backward; 0 before the first edge.
+    /// 1 forward, -1 backward; 0 before the first edge and behind one that skips sectors.
     pub direction: W,
+}
+
+impl<W: Word> Turn<W> {
+    fn unknown() -> Self {
+        Self {
+            hall: HallCode::default(),
+            age: word(0.0),
+            interval: word(0.0),
+            direction: word(0.0),
+        }
+    }
 }
 
 /// The Hall code of a sample.
@@ -346,42 +363,54 @@ impl<W: Word> Supervisor<W> {
         !matches!(self.mode, Mode::Calibrate | Mode::Precharge)
     }
 
-    /// Starts coasting; ignored when tripped and in start-up.
-    pub fn coast(&mut self) {
-        if self.is_in_control() {
-            self.mode = Mode::Coast;
-        }
+    /// The drive is made, reset, calibrated or charged: control follows, with the rotor's angle where it
+    /// is waited for.
+    pub fn start(&mut self, limits: &Limits) {
+        self.countdown = word(limits.start_periods);
+        self.turn = Turn::unknown();
+        self.go_on();
     }
 
-    /// Starts braking; ignored when tripped, in start-up, and while braking.
+    /// What is left of a start, or control.
+    fn go_on(&mut self) {
+        self.mode = if self.countdown > 0.0 {
+            Mode::Start
+        } else {
+            Mode::Run
+        };
+    }
+
+    /// Starts coasting; ignored when tripped, calibrating and pre-charging.
+    pub fn coast(&mut self) {
+        self.stop(Mode::Coast);
+    }
+
+    /// Starts braking; ignored when tripped, calibrating and pre-charging.
     pub fn brake(&mut self) {
-        if self.is_in_control() && self.mode != Mode::Brake {
-            self.mode = Mode::Brake;
-            self.turn = Turn {
-                hall: HallCode::default(),
-                age: word(0.0),
-                interval: word(0.0),
-                direction: word(0.0),
-            };
+        self.stop(Mode::Brake);
+    }
+
+    fn stop(&mut self, mode: Mode) {
+        match self.mode {
+            Mode::Run => self.turn = Turn::unknown(),
+            Mode::Start | Mode::Coast | Mode::Brake => {}
+            Mode::Calibrate | Mode::Precharge | Mode::Tripped => return,
         }
+        self.mode = mode;
     }
 
     /// Ends both; whether there was anything to end.
     pub fn resume(&mut self) -> bool {
         let is_off = matches!(self.mode, Mode::Coast | Mode::Brake);
         if is_off {
-            self.mode = Mode::Run;
+            self.go_on();
         }
         is_off
     }
 
-    fn is_in_control(&self) -> bool {
-        matches!(self.mode, Mode::Run | Mode::Coast | Mode::Brake)
-    }
-
     /// Starts the bootstrap pre-charge; ignored when tripped or calibrating.
     pub fn precharge(&mut self, limits: &Limits) {
-        let may_start = matches!(self.mode, Mode::Run | Mode::Precharge);
+        let may_start = matches!(self.mode, Mode::Run | Mode::Start | Mode::Precharge);
         if may_start && limits.precharge_periods > 0.0 {
             self.mode = Mode::Precharge;
             self.countdown = word(limits.precharge_periods);
@@ -457,11 +486,19 @@ impl<W: Word> Supervisor<W> {
             };
         }
         let (mut period, mut against) = (Period::Off, None);
+        let is_followed = matches!(self.mode, Mode::Start | Mode::Coast | Mode::Brake);
+        if is_followed && found.is_none() {
+            let is_known = self.follow(limits, HallCode(seen.hall.code()));
+            self.countdown = if is_known {
+                word(0.0)
+            } else {
+                greater(self.countdown - 1.0, 0.0)
+            };
+        }
         if self.mode == Mode::Precharge && found.is_none() {
             period = Period::Low;
-        } else if self.mode == Mode::Brake && found.is_none() {
-            let is_slow = self.follow(limits, HallCode(seen.hall.code()));
-            if is_slow {
+        } else if self.mode == Mode::Brake && found.is_none() && self.countdown == 0.0 {
+            if greater(self.turn.age, self.turn.interval) >= limits.brake_periods {
                 period = Period::Low;
             } else {
                 period = Period::Control;
@@ -482,6 +519,7 @@ impl<W: Word> Supervisor<W> {
         let mut calibrated = false;
         match self.mode {
             Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
+            Mode::Start => self.go_on(),
             Mode::Calibrate => {
                 for (sum, adc) in self.sum.iter_mut().zip(seen.adc) {
                     *sum += lesser(adc, limits.adc_max);
@@ -497,18 +535,18 @@ impl<W: Word> Supervisor<W> {
                     self.fault = Some(Fault::Offset);
                 } else if self.countdown == 0.0 {
                     calibrated = true;
-                    self.countdown = word(limits.precharge_periods);
-                    self.mode = if limits.precharge_periods > 0.0 {
-                        Mode::Precharge
+                    if limits.precharge_periods > 0.0 {
+                        self.countdown = word(limits.precharge_periods);
+                        self.mode = Mode::Precharge;
                     } else {
-                        Mode::Run
-                    };
+                        self.start(limits);
+                    }
                 }
             }
             Mode::Precharge => {
                 self.countdown = greater(self.countdown - 1.0, 0.0);
                 if self.countdown == 0.0 {
-                    self.mode = Mode::Run;
+                    self.start(limits);
                 }
             }
         }
@@ -519,22 +557,25 @@ impl<W: Word> Supervisor<W> {
         }
     }
 
-    /// Follows the rotor while braking; whether it is slow enough for a short circuit.
+    /// Follows the rotor; whether this is the second edge in a row in its direction.
     fn follow(&mut self, limits: &Limits, code: HallCode) -> bool {
         let [before, now] = [self.turn.hall, code].map(|code| limits.sectors[usize::from(code.0)]);
+        let mut is_second = false;
         if before != 0 && before != now {
             // Sectors ahead, of six.
-            match (now + 6 - before) % 6 {
-                1 => self.turn.direction = word(1.0),
-                5 => self.turn.direction = word(-1.0),
-                _ => {}
-            }
+            let direction = match (now + 6 - before) % 6 {
+                1 => 1.0,
+                5 => -1.0,
+                _ => 0.0,
+            };
+            is_second = direction != 0.0 && self.turn.direction == direction;
+            self.turn.direction = word(direction);
             self.turn.interval = self.turn.age;
             self.turn.age = word(0.0);
         }
         self.turn.hall = code;
         self.turn.age = lesser(self.turn.age + 1.0, limits.brake_periods);
-        greater(self.turn.age, self.turn.interval) >= limits.brake_periods
+        is_second
     }
 
     /// Counts periods under demand since the last change of the Hall code.

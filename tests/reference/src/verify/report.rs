@@ -16,6 +16,8 @@ pub struct Report {
     pub calibrations: u64,
     /// Steps with bootstrap pre-charge in progress.
     pub precharging: u64,
+    /// Steps of a start that waits for the rotor's angle.
+    pub starting: u64,
     /// Steps coasting and braking without control.
     pub stopped: u64,
     /// Steps braking in control.
@@ -44,7 +46,7 @@ impl Report {
     pub(super) fn count(&mut self, model: &BitTrue, before: Mode) {
         self.steps += 1;
         let calibrated =
-            before == Mode::Calibrate && matches!(model.mode(), Mode::Precharge | Mode::Run);
+            before == Mode::Calibrate && !matches!(model.mode(), Mode::Calibrate | Mode::Tripped);
         self.calibrations += u64::from(calibrated);
         self.fresh_bus += u64::from(model.has_measured_bus() && !model.bus_is_stale());
         match model.mode() {
@@ -59,6 +61,7 @@ impl Report {
             }
             Mode::Calibrate => self.calibrating += 1,
             Mode::Precharge => self.precharging += 1,
+            Mode::Start => self.starting += 1,
             Mode::Brake if model.is_in_control() => self.opposing += 1,
             Mode::Coast | Mode::Brake => self.stopped += 1,
             Mode::Tripped => self.tripped += 1,
@@ -72,6 +75,7 @@ impl Report {
         self.calibrating += other.calibrating;
         self.calibrations += other.calibrations;
         self.precharging += other.precharging;
+        self.starting += other.starting;
         self.stopped += other.stopped;
         self.opposing += other.opposing;
         self.tripped += other.tripped;
@@ -91,7 +95,7 @@ impl fmt::Display for Report {
         write!(
             f,
             "{} steps: {:.1} % in control ({:.1} % limited, {:.1} % past reach, {:.1} % commutating, {:.1} % with angle), \
-             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % off or braking, {:.1} % tripped; {} calls, {} calibrations",
+             {:.1} % calibrating, {:.1} % pre-charging, {:.1} % starting, {:.1} % off or braking, {:.1} % tripped; {} calls, {} calibrations",
             self.steps,
             share(self.running),
             share(self.limited),
@@ -100,6 +104,7 @@ impl fmt::Display for Report {
             share(self.timed),
             share(self.calibrating),
             share(self.precharging),
+            share(self.starting),
             share(self.stopped + self.opposing),
             share(self.tripped),
             self.actions,

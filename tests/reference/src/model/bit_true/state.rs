@@ -154,10 +154,10 @@ macro_rules! for_each_word {
         $show!("hall_prev", $state.supervisor.hall_prev);
         $show!("hall_gap", $state.supervisor.hall_gap);
         $show!("hall_glitches", $state.supervisor.hall_glitches);
-        $show!("brake_hall", $state.supervisor.turn.hall);
-        $show!("brake_age", $state.supervisor.turn.age);
-        $show!("brake_interval", $state.supervisor.turn.interval);
-        $show!("brake_direction", $state.supervisor.turn.direction);
+        $show!("turn_hall", $state.supervisor.turn.hall);
+        $show!("turn_age", $state.supervisor.turn.age);
+        $show!("turn_interval", $state.supervisor.turn.interval);
+        $show!("turn_direction", $state.supervisor.turn.direction);
         if $parts.has(Part::Edges) {
             $show!("sector_prev", $state.sector_prev);
         }
