@@ -13,7 +13,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{CurrentSensing, CurrentSensor, Origins, SensedPhases, Spec};
+use crate::spec::{CurrentSensing, CurrentSensor, Origins, Spec};
 use crate::stopwatch::Part;
 
 /// Input of the emitters.
@@ -101,11 +101,6 @@ fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
     let first = inverter.sensors()[0];
     let has_gain = |sensor: &CurrentSensor| sensor.gain.abs() == first.gain.abs();
     let mut errors = Collector::new();
-    if inverter.sensed_phases == SensedPhases::Abc {
-        errors.push(catalogue::three_sensors(
-            origins.at("inverter.sensed_phases"),
-        ));
-    }
     if !inverter.other_sensors.iter().all(has_gain) {
         let gains: Vec<String> = inverter
             .sensors()

@@ -163,6 +163,8 @@ codes! {
     TripFarAbove = 610,
     /// Hysteresis control may reach the trip current without a fault.
     SwingAboveTrip = 611,
+    /// A third current sensor is not read.
+    UnreadSensor = 612,
     /// An internal error of the generator.
     Internal = 901,
 }

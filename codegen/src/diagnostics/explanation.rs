@@ -470,6 +470,12 @@ impl Code {
                 "the same drive with a wider adc_range or a lower max_current",
                 "Lower max_current or widen adc_range.",
             ),
+            Self::UnreadSensor => say(
+                "Two phase currents give the third. Of three sensors this version reads those of phases a and b.",
+                "sensed_phases = \"abc\"",
+                "sensed_phases = \"ab\"",
+                "Name two phases, or leave it: nothing is wrong.",
+            ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",
                 "any specification",

@@ -65,6 +65,7 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
             phases: match inverter.sensed_phases {
                 spec::SensedPhases::Bc => SensedPhases::Bc,
                 spec::SensedPhases::Ca => SensedPhases::Ca,
+                // Of three sensors those of a and b are read.
                 spec::SensedPhases::Ab | spec::SensedPhases::Abc => SensedPhases::Ab,
             },
             second: (second != first).then_some(second),

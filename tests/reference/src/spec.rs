@@ -209,8 +209,6 @@ pub enum SensedPhases {
     Bc,
     /// Phases c and a.
     Ca,
-    /// All three.
-    Abc,
 }
 
 impl SensedPhases {
@@ -220,7 +218,6 @@ impl SensedPhases {
             Self::Ab => &[0, 1],
             Self::Bc => &[1, 2],
             Self::Ca => &[2, 0],
-            Self::Abc => &[0, 1, 2],
         }
     }
 

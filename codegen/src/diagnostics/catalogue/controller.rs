@@ -53,16 +53,6 @@ pub fn option_of_other_controller(
     )
 }
 
-/// Current sensors in all three phases.
-pub fn three_sensors(at: &Location) -> Diagnostic {
-    Diagnostic::new(
-        Code::OptionUnavailable,
-        at,
-        "`sensed_phases`: three current sensors are not available in this version; name two of them, `ab`, `bc` or `ca`"
-            .to_owned(),
-    )
-}
-
 /// Current sensors of different gains.
 pub fn unlike_gains(at: &Location, gains: &str) -> Diagnostic {
     Diagnostic::new(

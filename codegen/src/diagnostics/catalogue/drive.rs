@@ -440,6 +440,16 @@ pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Di
     )
 }
 
+/// Of three current sensors two are read.
+pub fn unread_sensor(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnreadSensor,
+        at,
+        "`sensed_phases`: of three current sensors this version reads those of phases a and b; `bc` or `ca` names another pair"
+            .to_owned(),
+    )
+}
+
 /// The timer period, `counts`, is outside 100 to 65535; `clock`, `f_pwm` in hertz.
 pub fn timer_period(
     timer: &Part,

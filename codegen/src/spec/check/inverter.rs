@@ -81,7 +81,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         t_s,
         timer_period,
         dead_time: reader.plain_quantity(errors, "dead_time"),
-        adc: read_adc(reader, sensing.phases, errors),
+        adc: read_adc(reader, sensing.stated, errors),
         sensing,
         trip_current: reader.plain_quantity(errors, "trip_current"),
         max_current: reader.plain_quantity(errors, "max_current"),
@@ -309,7 +309,8 @@ fn read_timer(
     )
 }
 
-/// The sensors: a count's worth, offset and sign, each for all phases or one of each.
+/// The sensors that are read: a count's worth, offset and sign, each for all phases or one of each
+/// that has a sensor.
 fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Option<Adc> {
     let bits = reader.integer(errors, "adc_bits");
     let counts_of = bits.map_or(0.0, |bits| f64::from(1_u32 << bits));
@@ -348,6 +349,7 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
             gain: sign * gain,
             offset: *offset,
         })
+        .take(2)
         .collect();
     let reaches = gains.iter().zip(&offsets);
     let reach = reaches

@@ -19,7 +19,7 @@ mod sensing;
 pub use origins::{Origin, Origins};
 
 use super::{Spec, SpecAst, schema};
-use crate::diagnostics::{Collector, Diagnostics, catalogue};
+use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue};
 use reader::Reader;
 
 /// Checks a specification and fills in every default.
@@ -43,7 +43,8 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let (controller, capture) =
         controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
 
-    let mut warnings = Vec::new();
+    let unread = sensing::unread(&inverter_reader, &inverter.sensing);
+    let mut warnings: Vec<Diagnostic> = unread.into_iter().collect();
     let contradicts =
         consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
     relations::check_period(&motor_reader, &motor, &inverter, &mut errors);

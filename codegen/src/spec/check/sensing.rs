@@ -3,7 +3,7 @@
 use super::inverter::Inverter;
 use super::reader::Reader;
 use crate::diagnostics::catalogue;
-use crate::diagnostics::{Collector, engineering};
+use crate::diagnostics::{Collector, Diagnostic, engineering};
 use crate::spec::ast::Section;
 use crate::spec::sensing::SensingTimes;
 use crate::spec::{ControllerSpec, CurrentSensing, SensedPhases};
@@ -15,6 +15,9 @@ const LEAST_DUTY: f64 = 0.5;
 /// What was read of the sensors' place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sensing {
+    /// The phases that have a sensor.
+    pub stated: SensedPhases,
+    /// Those whose sensors are read: two of them.
     pub phases: SensedPhases,
     /// None together with an error.
     pub place: Option<CurrentSensing>,
@@ -29,11 +32,18 @@ impl Sensing {
     }
 }
 
+const SENSED_PHASES: &str = "sensed_phases";
+
 pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
+    let stated = reader
+        .choice(errors, SENSED_PHASES, &[])
+        .unwrap_or(SensedPhases::Ab);
     Sensing {
-        phases: reader
-            .choice(errors, "sensed_phases", &[])
-            .unwrap_or(SensedPhases::Ab),
+        stated,
+        phases: match stated {
+            SensedPhases::Abc => SensedPhases::Ab,
+            two => two,
+        },
         place: read_place(reader, errors),
         minimum_low_time: time(reader, errors, "minimum_low_time").unwrap_or(0.0),
     }
@@ -87,6 +97,12 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
         conversion: conversion?,
         lead: lead.unwrap_or(0.0),
     }))
+}
+
+/// The warning that a sensor is not read, if one is not.
+pub(super) fn unread(reader: &Reader, sensing: &Sensing) -> Option<Diagnostic> {
+    let field = reader.field(SENSED_PHASES)?;
+    (sensing.phases != sensing.stated).then(|| catalogue::unread_sensor(&field.location))
 }
 
 /// Values of a field that may hold one of each sensed phase: one for all, or as many as there are phases.
@@ -154,9 +170,7 @@ pub(super) fn check(
             (1.0 - LEAST_DUTY) / 2.0 / needed,
         ));
     }
-    if sensing.phases != SensedPhases::Abc
-        && let Some(off) = controller.and_then(ControllerSpec::turns_off)
-    {
+    if let Some(off) = controller.and_then(ControllerSpec::turns_off) {
         let place = reader.part("current_sensing", String::new);
         let phases = reader.part("sensed_phases", || "ab".to_owned());
         let at = options

@@ -46,9 +46,9 @@ fn the_largest_readable_duty_follows_from_the_window() {
             2e-6,
             1656,
         ),
-        // Three sensors: a further conversion.
+        // Of three sensors two are read.
         (
-            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"1 us\"\nsensed_phases = \"abc\"",
+            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"2 us\"\nsensed_phases = \"abc\"",
             1.5e-6,
             2.2e-6,
             // 79.2 counts on either side, rounded up.

@@ -1,7 +1,10 @@
-//! `hexagen boards`: the library of boards, and which motors of the library fit each.
+//! `hexagen boards`: the library of boards, which motors of the library fit each, and why the others
+//! do not.
 
 use crate::cli::{Bar, Failure, print_json, print_table, print_text};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
+use hexagen_codegen::spec::BOARDS;
 use hexagen_lab::boards::{Fit, LibraryBoard, library_of_boards};
 use hexagen_lab::report::Table;
 use serde::Serialize;
@@ -9,6 +12,9 @@ use serde::Serialize;
 /// Options of `boards`.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Options {
+    /// A board of the library: why the other motors do not fit it
+    #[arg(value_parser = PossibleValuesParser::new(BOARDS.iter().map(|board| board.name)))]
+    pub board: Option<String>,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -23,17 +29,22 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     struct Library {
         boards: Vec<LibraryBoard>,
     }
-    let boards = library_of_boards(&Bar::default())?;
+    let mut boards = library_of_boards(&Bar::default())?;
+    if let Some(name) = &options.board {
+        boards.retain(|board| board.name == *name);
+    }
     if options.json {
         return print_json(&Library { boards });
     }
     print_table(&table(&boards))?;
-    for board in &boards {
-        for Fit { motor, reason, .. } in &board.motors {
-            // What stands first decides: the rest often follows from it.
-            if let Some(reason) = reason.as_deref().and_then(|text| text.lines().next()) {
-                print_text(&format!("{motor} on {}: {reason}", board.name))?;
-            }
+    if options.board.is_none() {
+        return print_text("`hexagen boards BOARD` says why the other motors do not fit a board.");
+    }
+    let motors = boards.iter().flat_map(|board| &board.motors);
+    for Fit { motor, reason, .. } in motors {
+        // What stands first decides: the rest often follows from it.
+        if let Some(reason) = reason.as_deref().and_then(|text| text.lines().next()) {
+            print_text(&format!("{motor}: {reason}"))?;
         }
     }
     Ok(())

@@ -18,6 +18,9 @@ pub struct Options {
     /// Motor file, or name of a library motor
     #[arg(value_name = "MOTOR")]
     pub motor: String,
+    /// Board, a name of the library or a file [default: the motor file's]
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
     /// Controller variant [default: the motor file's]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
     pub controller: Option<String>,
@@ -80,14 +83,22 @@ pub struct Checked {
 /// # Errors
 /// All diagnostics; a drive that does not work.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let motor = SelectedMotor::find(&options.motor, &PlantOptions::default())?;
+    let on_board = PlantOptions {
+        board: options.board.clone(),
+        ..PlantOptions::default()
+    };
+    let motor = SelectedMotor::find(&options.motor, &on_board)?;
     let drive = motor.prepare_for_torque(options.controller.as_deref())?;
     let checked = Checked::of(&drive)?;
     if options.json {
         print_json(&checked)?;
     } else {
         tell_warnings(&drive);
-        print_text(&checked.lines(&drive, &options.motor).join("\n"))?;
+        let next = match &options.board {
+            Some(board) => format!("hexagen simulate {} --board {board}", options.motor),
+            None => format!("hexagen report {}", options.motor),
+        };
+        print_text(&checked.lines(&drive, &next).join("\n"))?;
     }
     if checked.works {
         Ok(())
@@ -166,7 +177,7 @@ impl Checked {
     }
 
     /// At most ten lines of at most 100 columns.
-    fn lines(&self, drive: &Prepared, given: &str) -> Vec<String> {
+    fn lines(&self, drive: &Prepared, next: &str) -> Vec<String> {
         let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
         let common = drive.spec.controller.common();
         let current = match common.reference {
@@ -220,7 +231,7 @@ impl Checked {
             100.0 * motor.resistance_tolerance,
             100.0 * motor.inductance_tolerance,
         ));
-        lines.push(format!("next        hexagen report {given}"));
+        lines.push(format!("next        {next}"));
         lines.iter().map(|line| shortened(line)).collect()
     }
 

@@ -112,6 +112,44 @@ fn every_motor_of_the_library_is_checked() {
     }
 }
 
+/// A board of three shunts, of which two are read.
+#[test]
+fn a_motor_is_checked_on_a_board() {
+    let said = run(["check", "teknic-m2310p", "--board", "st-b-g431b-esc1"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.stderr.contains("warning[HX0612]"), "{said:?}");
+    assert!(said.stdout.contains("29.37 mA a count"), "{said:?}");
+    let next = "hexagen simulate teknic-m2310p --board st-b-g431b-esc1";
+    assert!(said.stdout.contains(next), "{said:?}");
+    run(["check", "teknic-m2310p", "--board", "esc1"]).assert_bad_input(&["esc1"]);
+}
+
+#[test]
+fn every_board_has_motors_and_says_why_others_do_not_fit() {
+    let said = run(["boards"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.stdout.lines().count() < 30, "{said:?}");
+    let list = run(["boards", "--json"]).json();
+    for board in list["boards"].as_array().expect("boards") {
+        let name = board["name"].as_str().expect("a name");
+        let motors = board["motors"].as_array().expect("motors");
+        assert!(motors.iter().any(|motor| motor["fits"] == true), "{name}");
+        let said = run(["boards", name]);
+        for motor in motors.iter().filter(|motor| motor["fits"] == false) {
+            let motor = motor["motor"].as_str().expect("a name");
+            let line = said
+                .stdout
+                .lines()
+                .find(|line| line.starts_with(&format!("{motor}: ")));
+            assert!(
+                line.is_some_and(|line| line.contains("error[HX")),
+                "{motor}: {said:?}"
+            );
+        }
+    }
+    run(["boards", "vesc"]).assert_bad_input(&["vesc-4"]);
+}
+
 #[test]
 fn check_tells_how_often_the_switches_turn_on() {
     // At 20 kHz; a leg that reaches an end of the period does not switch in it.

@@ -232,7 +232,7 @@ impl Limits {
         match self.sensed {
             SensedPhases::Bc => [limited(i_a), i_b],
             SensedPhases::Ca => [i_a, limited(i_b)],
-            SensedPhases::Ab | SensedPhases::Abc => [i_a, i_b],
+            SensedPhases::Ab => [i_a, i_b],
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::cli::{Failure, print_table, print_text};
 use hexagen_lab::accuracy::{Accuracy, FigureDifference, Row};
 use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
+use std::cmp::Reverse;
 
 /// Prints the rows, with all figures of merit for a single controller.
 ///
@@ -25,7 +26,8 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
     )?;
     print_table(&step_table(rows))?;
     if !with_figures {
-        return print_text("Every figure of merit: --controller with one variant, or --json.");
+        print_text("Every figure of merit: --controller with one variant, or --json.\n")?;
+        return print_text(&closing(rows));
     }
     for row in rows {
         let Some(accuracy) = &row.accuracy else {
@@ -45,7 +47,53 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
         }
     }
     print_text(
-        "\nideal: with the ADC words and the state of the fixed-point drive; alone: in its own closed loop.",
+        "\nideal: with the ADC words and the state of the fixed-point drive; alone: in its own closed loop.\n",
+    )?;
+    print_text(&closing(rows))
+}
+
+/// A sentence for each word length, widest first.
+fn closing(rows: &[Row]) -> String {
+    let mut words: Vec<u32> = rows.iter().map(|row| row.word).collect();
+    words.sort_unstable_by_key(|word| Reverse(*word));
+    words.dedup();
+    let sentences = words.into_iter().map(|word| of_word(rows, word));
+    sentences.collect::<Vec<_>>().join("\n")
+}
+
+/// How far the drives of a word length are from floating point, at most.
+fn of_word(rows: &[Row], word: u32) -> String {
+    let rows = rows.iter().filter(|row| row.word == word);
+    let compared = rows.filter_map(|row| Some((&row.controller, row.accuracy.as_ref()?)));
+    let compared: Vec<_> = compared.collect();
+    let apart = compared.iter();
+    let apart = apart.map(|(_, accuracy)| accuracy.one_step.compares_apart_counts);
+    let furthest = compared.iter().filter_map(|(controller, accuracy)| {
+        let (figure, rpm) = accuracy.furthest()?;
+        Some((controller, figure, rpm))
+    });
+    let furthest = furthest
+        .max_by(|(_, one, _), (_, other, _)| one.of_allowance.total_cmp(&other.of_allowance));
+    let Some((apart, (controller, figure, rpm))) = apart.max().zip(furthest) else {
+        return format!("With words of {word} bits nothing could be compared.");
+    };
+    let step = match apart {
+        0 => "every compare value of a step is that of floating point".to_owned(),
+        1 => "no compare value of a step is more than 1 count from floating point".to_owned(),
+        counts => format!("compare values of a step are up to {counts} counts from floating point"),
+    };
+    let kept = if figure.close {
+        "within its tolerance".to_owned()
+    } else {
+        format!(
+            "{} times its tolerance",
+            significant(figure.of_allowance, 2)
+        )
+    };
+    format!(
+        "With words of {word} bits {step}; in closed loop the figure that differs most, {} of {controller} at {rpm:.0} rpm, does so by {}, {kept}.",
+        figure.figure,
+        figure.text(),
     )
 }
 
