@@ -254,7 +254,10 @@ static bool follows(uint32_t sector, uint32_t next)
     return next == ((sector == 6U) ? 1U : sector + 1U);
 }
 
-/** Follows the rotor for a control period; whether a second edge in one direction ends it. */
+/**
+ * Follows the rotor for a control period; whether it ends in an edge that is the second in a row in
+ * one direction.
+ */
 static bool is_known(hexagen_supervisor *supervisor, const hexagen_limits *limits, uint16_t hall)
 {
     const uint32_t before = sector_of(limits, supervisor->turn_hall);

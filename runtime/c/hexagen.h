@@ -738,21 +738,25 @@ bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
 /**
- * Starts pre-charge; ignored when tripped, while calibrating, and if the specification has none.
+ * Starts pre-charge; ignored when tripped, calibrating, coasting and braking, and if the
+ * specification has none.
  */
 void hexagen_precharge(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
-/** Turns all legs off until hexagen_resume. Ignored when tripped and in start-up. */
+/** Turns all legs off until hexagen_resume. Ignored when tripped, calibrating and pre-charging. */
 void hexagen_coast(hexagen_supervisor *supervisor);
 
 /**
  * Brakes until hexagen_resume: all lower switches on where the short-circuited motor takes no more
  * than the largest current, above that speed this current against the rotation; none until the
- * first Hall edge tells the direction. Ignored when tripped and in start-up.
+ * first Hall edge tells the direction. Ignored when tripped, calibrating and pre-charging.
  */
 void hexagen_brake(hexagen_supervisor *supervisor);
 
-/** Ends coasting and braking. False, without effect, if the drive does neither. */
+/**
+ * Ends coasting and braking: what is left of a start follows, or control. False, without effect, if
+ * the drive does neither.
+ */
 bool hexagen_resume(hexagen_supervisor *supervisor);
 
 /** Turns all legs off until a reset, for a fault that a sample does not show. The first is kept. */

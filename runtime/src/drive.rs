@@ -226,8 +226,9 @@ impl<C: Control> ControlLoop<'_, C> {
     /// Ignored while calibrating and pre-charging.
     ///
     /// A start follows, without calibration and pre-charge: if the bootstrap capacitors need it, call
-    /// [`precharge`](Self::precharge) first. With a speed loop the set-point is the speed, and
-    /// speed 0 brakes a turning rotor with up to the current limit.
+    /// [`precharge`](Self::precharge) right behind this. Each call begins the start anew. With a speed
+    /// loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current
+    /// limit.
     pub fn reset(&mut self) {
         if self.core.supervisor.reset(&C::LIMITS, &C::SENSORS) {
             self.core.law = C::State::INITIAL;
@@ -238,16 +239,17 @@ impl<C: Control> ControlLoop<'_, C> {
     }
 
     /// Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, if
-    /// specified, and control with the present set-point follow automatically. Ignored when
+    /// specified, a start and control with the present set-point follow by themselves. Ignored when
     /// tripped.
     pub fn calibrate(&mut self) {
         self.core.supervisor.calibrate(&C::LIMITS);
         self.publish();
     }
 
-    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor;
-    /// control follows automatically. Accepted during control, too: call it only at rest. Ignored
-    /// when tripped, while calibrating, and if the specification has no pre-charge.
+    /// Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor; a
+    /// start, in which all legs are off, and control follow by themselves. Accepted during control,
+    /// too: call it only at rest. Ignored when tripped, calibrating, coasting and braking, and if the
+    /// specification has no pre-charge.
     pub fn precharge(&mut self) {
         self.core.supervisor.precharge(&C::LIMITS);
         self.publish();
@@ -264,14 +266,15 @@ impl<C: Control> ControlLoop<'_, C> {
     /// Slows the rotor down until [`resume`](Self::resume) or a reset: all lower switches on where
     /// the motor takes no more than the specification's `max_current` that way; above that speed this
     /// current against the rotation, with a speed loop speed 0 within the current that is set, into
-    /// the bus. Ignored when tripped, calibrating and pre-charging.
+    /// the bus. In a start, once that is over. Ignored when tripped, calibrating and pre-charging.
     pub fn brake(&mut self) {
         self.core.supervisor.brake();
         self.publish();
     }
 
-    /// Ends coasting and braking: control at set-point 0 follows, with the rotor's angle and speed as
-    /// they were followed meanwhile. Ignored if the drive does neither.
+    /// Ends coasting and braking: control at set-point 0 follows, behind what is left of a start that
+    /// they interrupted, with the rotor's angle and speed as they were followed meanwhile. Ignored if
+    /// the drive does neither.
     pub fn resume(&mut self) {
         if self.core.supervisor.resume() {
             self.set_point.clear();

@@ -267,9 +267,9 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// # Start-up
 ///
-/// A new drive controls currents at set-point 0, with nominal current offsets and bootstrap
-/// capacitors not charged. If the inverter needs either, call calibration first; the steps follow
-/// each other automatically:
+/// A new drive begins with the third of these steps, at set-point 0, with nominal current offsets and
+/// bootstrap capacitors not charged. If the inverter needs either, call calibration first; the steps
+/// follow each other:
 ///
 /// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor must be at
 ///    rest. An offset too far from its nominal value trips the drive.
@@ -277,7 +277,8 @@ const fn is_hall_code(hall: u8) -> bool {
 ///    capacitors, and short-circuit a turning motor.
 /// 3. Start, where the law knows the EMF from the rotor's angle: periods with all legs off, until two
 ///    Hall edges in one direction give that angle. A rotor that is too slow for them within
-///    [`start_periods`](Limits::start_periods) needs none. So control may begin at any speed.
+///    [`start_periods`](Limits::start_periods) needs none. So control may begin at any speed. The
+///    bootstrap capacitors must hold their charge meanwhile, or get it from the first pulses.
 /// 4. Control with the present set-point.
 ///
 /// A fault ends start-up and discards its results; a reset leads to the third step.
@@ -290,7 +291,8 @@ const fn is_hall_code(hall: u8) -> bool {
 /// that current against the rotation, which feeds the bus; until the first Hall edge tells the
 /// direction, no current. Both go on until [`resume`](Self::resume), a reset or a trip; the
 /// set-point is 0 then. The sensors are watched as in control, but for a stall. A start that they
-/// interrupt goes on meanwhile: braking begins behind it, and so does control if it is resumed before.
+/// interrupt goes on meanwhile: braking begins when it is over; if `resume` comes earlier, the rest of
+/// the start follows.
 ///
 /// # Safe states
 ///
@@ -363,7 +365,8 @@ impl Turn {
         direction: Word(0),
     };
 
-    /// Follows the rotor for a control period; whether a second edge in one direction ends it.
+    /// Follows the rotor for a control period; whether it ends in an edge that is the second in a row
+    /// in one direction.
     fn follow(&mut self, limits: &Limits, hall: u8) -> bool {
         let (before, now) = (limits.sector(self.hall), limits.sector(hall));
         let is_edge = before != 0 && now != before;
@@ -761,8 +764,8 @@ impl Supervisor {
         }
     }
 
-    /// Starts pre-charge; ignored when tripped, while calibrating, and if the specification has
-    /// none.
+    /// Starts pre-charge; ignored when tripped, calibrating, coasting and braking, and if the
+    /// specification has none.
     pub fn precharge(&mut self, limits: &Limits) {
         let may_begin = matches!(self.mode, Mode::Run | Mode::Start | Mode::Precharge);
         if may_begin && limits.precharge_periods != 0 {

@@ -91,7 +91,7 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
 fn start(spec: &Spec, design: &LoopDesign) -> String {
     let told = match spec.inverter.bus {
         BusSource::Fixed => "",
-        BusSource::Measured { .. } => " and with the bus voltage set by `set_bus`",
+        BusSource::Measured { .. } => ", once `set_bus` has told the bus voltage",
     };
     let speed = start_rpm(spec, design);
     match spec.start_periods() {
@@ -99,8 +99,8 @@ fn start(spec: &Spec, design: &LoopDesign) -> String {
             "Control may begin on a rotor that turns at up to {speed} rpm, at set-point 0{told}."
         ),
         periods => format!(
-            "A start has all legs off until two Hall edges in one direction tell the angle, {} where the rotor stands; \
-             then control begins at up to {speed} rpm{told}.",
+            "A start keeps all legs off until two Hall edges in one direction tell the angle, and for {} where the rotor \
+             stands or turns slowly; control may begin at up to {speed} rpm{told}.",
             engineering(f64::from(periods) * spec.inverter.t_s, "s")
         ),
     }

@@ -41,7 +41,8 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// trip.
 ///
 /// A drive that models the EMF waits for the rotor's angle where it turns fast
-/// ([`Spec::start_periods`]), and knows the EMF then. For any other:
+/// ([`Spec::start_periods`]), and knows the EMF then, if its sensors measure such speeds. For any
+/// other:
 ///
 /// At the first command the EMF is unknown: no estimate yet, no speed from the Hall sensors. Later
 /// knowledge only helps, and a slow filter may never gain it. So the current is the closed loop's
@@ -57,7 +58,10 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let options = spec.controller.common();
     let most = (inverter.lowest_bus() / line).min(inverter.maximum_speed);
-    if spec.start_periods() > 0 {
+    if spec
+        .waiting_speed()
+        .is_some_and(|from| inverter.minimum_speed <= from)
+    {
         return most;
     }
     let turn = most * f64::from(motor.pole_pairs) * inverter.t_s;

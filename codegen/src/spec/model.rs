@@ -55,24 +55,29 @@ impl Spec {
             .map_or(0, |sector| (sector / self.inverter.t_s).ceil() as u32)
     }
 
-    /// Control periods that a start waits at most for the rotor's angle: two sectors at the speed at
-    /// which the short-circuited motor takes half the largest current. Control without an angle, and
-    /// so without the EMF, adds no more than that to its set-point. 0 where the law does not model
-    /// the EMF, which then the angle does not give, or where no speed takes as much.
+    /// Control periods that a start waits at most for the rotor's angle: two sectors at
+    /// [`waiting_speed`](Self::waiting_speed); 0 for none.
     pub fn start_periods(&self) -> u16 {
+        self.waiting_speed().map_or(0, |speed| {
+            let sector = FRAC_PI_3 / (speed * f64::from(self.motor.pole_pairs));
+            // A hair less, for the rounding of the way to the speed and back.
+            let periods = 2.0 * (sector / self.inverter.t_s - 1e-9).ceil();
+            periods.min(f64::from(u16::MAX)) as u16
+        })
+    }
+
+    /// Speed above which control waits for the rotor's angle, mechanical rad/s: that at which the
+    /// short-circuited motor takes half the largest current. Control without an angle, and so
+    /// without the EMF, adds no more than that to its set-point. `None` where the law does not model
+    /// the EMF, which then the angle does not give, or where no speed of the drive takes as much.
+    pub fn waiting_speed(&self) -> Option<f64> {
         let is_modelled = matches!(
             self.controller.common().emf,
             EmfSource::Model | EmfSource::Observer
         );
-        let sector = self.shorted_sector(self.inverter.max_current / 2.0);
-        let top = f64::from(self.motor.pole_pairs) * self.inverter.maximum_speed;
-        match sector {
-            Some(sector) if is_modelled && FRAC_PI_3 / sector < top => {
-                let periods = 2.0 * (sector / self.inverter.t_s).ceil();
-                periods.min(f64::from(u16::MAX)) as u16
-            }
-            _ => 0,
-        }
+        let sector = self.shorted_sector(self.inverter.max_current / 2.0)?;
+        let speed = FRAC_PI_3 / sector / f64::from(self.motor.pole_pairs);
+        (is_modelled && speed < self.inverter.maximum_speed).then_some(speed)
     }
 
     /// Seconds of a sector at the speed at which the short-circuited motor takes this current, e/|Z|

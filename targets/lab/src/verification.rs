@@ -53,6 +53,8 @@ pub struct Coverage {
     pub calibrating: u64,
     /// Bootstrap pre-charge under way.
     pub precharging: u64,
+    /// A start under way, which waits for the rotor's angle.
+    pub starting: u64,
     /// Tripped.
     pub tripped: u64,
     /// In control and limited to the hexagon.
@@ -75,6 +77,7 @@ impl From<&Report> for Coverage {
             running: report.running,
             calibrating: report.calibrating,
             precharging: report.precharging,
+            starting: report.starting,
             tripped: report.tripped,
             limited: report.limited,
             past_reach: report.past_reach,

@@ -510,23 +510,23 @@ impl Drive<'_> {
                 "reset",
                 &[
                     "Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.",
-                    "Ignored while calibrating and pre-charging. A start follows, without calibration and pre-charge. With a speed loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current limit.",
+                    "Ignored while calibrating and pre-charging. A start follows, without calibration and pre-charge: if the bootstrap capacitors need it, call `precharge()` right behind this. Each call begins the start anew. With a speed loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current limit.",
                 ],
                 reset,
             ),
             command(
                 "calibrate",
                 &[
-                    "Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, if specified, and control with the",
-                    "present set-point follow automatically. Ignored when tripped.",
+                    "Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, if specified, a start and control with the",
+                    "present set-point follow by themselves. Ignored when tripped.",
                 ],
                 run("calibrate"),
             ),
             command(
                 "precharge",
                 &[
-                    "Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor; control follows automatically.",
-                    "Accepted during control, too: call it only at rest. Ignored when tripped, while calibrating, and if the specification has no pre-charge.",
+                    "Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor; a start, in which all legs are off, and control follow by themselves.",
+                    "Accepted during control, too: call it only at rest. Ignored when tripped, calibrating, coasting and braking, and if the specification has no pre-charge.",
                 ],
                 run("precharge"),
             ),
@@ -542,14 +542,14 @@ impl Drive<'_> {
                 "brake",
                 &[
                     "Slows the rotor down until `resume()` or a reset: all lower switches on where the motor takes no more than `max_current` that way;",
-                    "above that speed this current against the rotation, with a speed loop speed 0 within the current that is set, into the bus. Ignored when tripped, calibrating and pre-charging.",
+                    "above that speed this current against the rotation, with a speed loop speed 0 within the current that is set, into the bus. In a start, once that is over. Ignored when tripped, calibrating and pre-charging.",
                 ],
                 lines(&["hexagen_brake(&drive->supervisor);"]),
             ),
             command(
                 "resume",
                 &[
-                    "Ends coasting and braking: control at set-point 0 follows, with the rotor's angle and speed as they were followed meanwhile. Ignored if the drive does neither.",
+                    "Ends coasting and braking: control at set-point 0 follows, behind what is left of a start that they interrupted, with the rotor's angle and speed as they were followed meanwhile. Ignored if the drive does neither.",
                 ],
                 format!(
                     "{INDENT}if (hexagen_resume(&drive->supervisor)) {{\n{inner}drive->{} = 0;\n{INDENT}}}\n",

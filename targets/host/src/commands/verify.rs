@@ -157,7 +157,7 @@ fn table(results: &[Checked]) -> Table {
             share(coverage.commutating),
             share(coverage.timed),
             share(coverage.backward),
-            share(coverage.calibrating + coverage.precharging),
+            share(coverage.calibrating + coverage.precharging + coverage.starting),
             share(coverage.tripped),
         ]);
     }

@@ -74,13 +74,23 @@ fn of_word(rows: &[Row], word: u32) -> String {
     });
     let furthest = furthest
         .max_by(|(_, one, _), (_, other, _)| one.of_allowance.total_cmp(&other.of_allowance));
-    let Some((apart, (controller, figure, rpm))) = apart.max().zip(furthest) else {
+    let Some(apart) = apart.max() else {
         return format!("With words of {word} bits nothing could be compared.");
     };
     let step = match apart {
         0 => "every compare value of a step is that of floating point".to_owned(),
         1 => "no compare value of a step is more than 1 count from floating point".to_owned(),
         counts => format!("compare values of a step are up to {counts} counts from floating point"),
+    };
+    let runs = compared
+        .iter()
+        .flat_map(|(_, accuracy)| &accuracy.closed_loop);
+    let trips = match runs.filter(|at| at.tripped.is_some()).count() {
+        0 => String::new(),
+        trips => format!("; {trips} runs trip and are not compared"),
+    };
+    let Some((controller, figure, rpm)) = furthest else {
+        return format!("With words of {word} bits {step}{trips}.");
     };
     let kept = if figure.close {
         "within its tolerance".to_owned()
@@ -91,7 +101,7 @@ fn of_word(rows: &[Row], word: u32) -> String {
         )
     };
     format!(
-        "With words of {word} bits {step}; in closed loop the figure that differs most, {} of {controller} at {rpm:.0} rpm, does so by {}, {kept}.",
+        "With words of {word} bits {step}; in closed loop the figure that differs most, {} of {controller} at {rpm:.0} rpm, does so by {}, {kept}{trips}.",
         figure.figure,
         figure.text(),
     )
