@@ -81,43 +81,40 @@ fn swing(drive: &Prepared) -> f64 {
     rise / motor.rated_current
 }
 
-/// Nearly all points are right that neither end at the bus nor are of motors whose current swings too
-/// far in a period.
+/// Nearly all points are right that do not end at the bus.
 #[test]
 fn random_motors_are_right_by_default() {
     let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
     let wanted = DRAWN[usize::from(is_whole)];
-    // Motors with an edge timer that the generator takes.
+    // Motors with an edge timer that the generator takes, and periods short enough for them.
     let drawn = (0..).filter_map(|seed: u64| {
         let text = RandomMotor::new(seed).toml();
         let name = format!("motor {seed}");
         let file = format!("{name}.toml");
         let drive = prepare(&MotorSource { name, file, text }, Some("pdcc")).ok()?;
         let is_timed = matches!(drive.spec.inverter.hall_capture, HallCapture::Timer { .. });
-        (is_timed && degrees_per_period(&drive.spec) <= FASTEST).then_some(drive)
+        let is_fit = degrees_per_period(&drive.spec) <= FASTEST && swing(&drive) <= SWING;
+        (is_timed && is_fit).then_some(drive)
     });
     let drawn: Vec<Prepared> = drawn.take(wanted).collect();
-    let swinging = drawn.iter().filter(|drive| swing(drive) > SWING).count();
-    println!("{swinging} motors of {} swing", drawn.len());
-    assert!(5 * swinging <= drawn.len());
     let points = 16 * drawn.len();
-    let wrong: Vec<(String, RatedPoint, bool)> = drawn
+    let wrong: Vec<(String, RatedPoint)> = drawn
         .par_iter()
         .flat_map_iter(|drive| {
             let degrees = degrees_per_period(&drive.spec);
             wrong(drive).into_iter().map(move |(point, speed, mode)| {
                 let at = format!("{} {degrees:.1} deg {speed} % {mode}", drive.motor);
-                let is_known = point.limit() != Limit::ControlPeriod || swing(drive) > SWING;
-                (at, point, is_known)
+                (at, point)
             })
         })
         .collect();
-    let trips = wrong.iter().filter(|(_, point, _)| point.tripped.is_some());
+    let trips = wrong.iter().filter(|(_, point)| point.tripped.is_some());
     let tripping: Vec<_> = trips.map(|(at, ..)| at).collect();
     assert!(tripping.is_empty(), "{tripping:?}");
-    let (known, unknown): (Vec<_>, Vec<_>) = wrong.iter().partition(|(.., known)| *known);
+    let at_bus = |point: &RatedPoint| point.limit() == Limit::BusVoltage;
+    let (known, unknown): (Vec<_>, Vec<_>) = wrong.iter().partition(|(_, point)| at_bus(point));
     println!("{} of {points} points: {known:#?}", known.len());
-    assert!(6 * known.len() < points, "{} of {points}", known.len());
+    assert!(20 * known.len() < points, "{} of {points}", known.len());
     assert!(
         30 * unknown.len() < points,
         "{} of {points}: {unknown:#?}",

@@ -9,6 +9,10 @@ use crate::spec::model::periods;
 use crate::spec::{ControllerSpec, HallCapture, InverterSpec};
 use std::f64::consts::FRAC_PI_3;
 
+/// Default `minimum_speed` over `rated_speed`, and the most that it becomes for a fast Hall timer.
+const MINIMUM_SPEED: f64 = 0.02;
+const GREATEST_MINIMUM: f64 = 0.04;
+
 /// Default pre-charge time, second.
 const PRECHARGE: f64 = 1e-3;
 
@@ -32,10 +36,10 @@ pub(super) fn inverter(
     let currents =
         adc.and_then(|adc| currents::finish(reader, inverter, adc, motor, controller, errors));
     let speeds = motor.rated_speed.as_ref().map(|rated| {
-        let minimum = inverter
-            .minimum_speed
-            .as_ref()
-            .map_or(0.02 * rated.si, |given| given.si);
+        let minimum = inverter.minimum_speed.as_ref().map_or_else(
+            || minimum_speed(rated.si, relations::slowest(inverter, motor, capture)),
+            |given| given.si,
+        );
         let maximum = inverter
             .maximum_speed
             .as_ref()
@@ -91,6 +95,14 @@ pub(super) fn inverter(
         calibration_log2: inverter.calibration_log2,
         precharge_periods: finish_precharge(reader, inverter, t_s, errors),
     })
+}
+
+/// Default least speed with an angle: a small share of the rated one, or what the Hall timer measures
+/// where that is no large one.
+fn minimum_speed(rated: f64, slowest: Option<f64>) -> f64 {
+    let default = MINIMUM_SPEED * rated;
+    let slowest = slowest.filter(|slowest| *slowest <= GREATEST_MINIMUM * rated);
+    default.max(slowest.unwrap_or(0.0))
 }
 
 /// Time without a Hall edge that trips the drive, second. By default a drive with a speed loop has

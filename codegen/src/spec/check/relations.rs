@@ -77,6 +77,16 @@ pub(super) fn check_bus(
     Some(())
 }
 
+/// Least speed that the Hall timer can measure, mechanical rad/s.
+pub(super) fn slowest(
+    inverter: &Inverter,
+    motor: &Motor,
+    capture: Option<HallCapture>,
+) -> Option<f64> {
+    let per_second = capture?.ticks_per_period() / inverter.t_s?;
+    Some(per_second * FRAC_PI_3 / (GREATEST_AGE * f64::from(motor.pole_pairs?)))
+}
+
 /// Minimum, rated and maximum speed in ascending order, within the Hall timer and the period.
 pub(super) fn check_speeds(
     inverter: &Inverter,
@@ -116,7 +126,7 @@ pub(super) fn check_speeds(
     }
     let per_second = capture?.ticks_per_period() / t_s;
     let ticks = per_second * FRAC_PI_3 / (minimum * pole_pairs);
-    if ticks > GREATEST_AGE {
+    if ticks > GREATEST_AGE * (1.0 + 1e-9) {
         let least = minimum * ticks / GREATEST_AGE;
         let clock = match capture? {
             HallCapture::Sampled => None,

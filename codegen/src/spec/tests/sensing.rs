@@ -124,3 +124,15 @@ fn a_control_period_is_so_many_pwm_periods() {
     assert!((inverter.t_s - 150e-6).abs() < 1e-12);
     assert!((inverter.pwm_period() - 50e-6).abs() < 1e-12);
 }
+
+/// A slow motor with a fast edge timer: the timer stops at 65535 ticks.
+#[test]
+fn the_least_speed_is_by_default_what_the_hall_timer_measures() {
+    let minimum = |lines: &str| {
+        let inverter = with_lines(&format!("adc_range = \"40 A\"\n{lines}"));
+        inverter.minimum_speed / (std::f64::consts::TAU / 60.0)
+    };
+    // Of 2000 rpm and four pole pairs: 2 % of it, and 60 degrees of 130 ms and of 32.5 ms.
+    assert!((minimum("hall_timer_clock = \"500 kHz\"") - 40.0).abs() < 1e-9);
+    assert!((minimum("hall_timer_clock = \"2 MHz\"") - 10.0 / (4.0 * 0.0325)).abs() < 1e-3);
+}
