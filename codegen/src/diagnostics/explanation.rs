@@ -403,7 +403,7 @@ impl Code {
                 "The current of an off leg may flow past a sensor in its low leg.",
                 "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"\nkind = \"phcc\"",
                 "kind = \"pdcc\"",
-                "Choose options that turn no leg off, or a board with sensors in three legs or in the phases.",
+                "Choose options that turn no leg off, or a board with sensors in the phases.",
             ),
             _ => say(
                 "A switching table has 48 rows of vectors: six sectors, with and without commutation, four states of the bands.",

@@ -41,18 +41,17 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// trip.
 ///
 /// A drive that models the EMF waits for the rotor's angle where it turns fast
-/// ([`Spec::start_periods`]), and knows the EMF then, if its sensors measure such speeds. For any
-/// other:
+/// ([`Spec::waiting_speed`]), and knows the EMF then, provided that its sensors measure such speeds.
 ///
-/// At the first command the EMF is unknown: no estimate yet, no speed from the Hall sensors. Later
-/// knowledge only helps, and a slow filter may never gain it. So the current is the closed loop's
-/// response to an EMF that appears at once and turns: for prediction without an EMF, one period of
-/// it before the first sample that shows it and, with delay 1, one more. The lowest bus must
-/// exceed the whole EMF; beyond that diodes conduct or voltage is missing, and nothing is promised.
-/// Controllers of whole vectors add the step of one vector, or with two vectors the greatest
-/// distance from the line between them. A speed loop brakes once it knows the speed, a sector later
-/// at the earliest, when a slow filter has not learned the EMF yet. Samples lie where the pulse
-/// ripple crosses its mean.
+/// For any other drive the EMF is unknown at the first command: no estimate yet, no speed from the
+/// Hall sensors. Later knowledge only helps, and a slow filter may never gain it. So the current
+/// is the closed loop's response to an EMF that appears at once and turns: for prediction without
+/// an EMF, one period of it before the first sample that shows it and, with delay 1, one more. The
+/// lowest bus must exceed the whole EMF; beyond that diodes conduct or voltage is missing, and
+/// nothing is promised. Controllers of whole vectors add the step of one vector, or with two
+/// vectors the greatest distance from the line between them. A speed loop brakes once it knows the
+/// speed, a sector later at the earliest, when a slow filter has not learned the EMF yet. Samples
+/// lie where the pulse ripple crosses its mean.
 fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;

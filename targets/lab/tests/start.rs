@@ -275,8 +275,7 @@ fn a_start_with_the_rated_torque_takes_at_most_half_of_it_more() {
         .filter_map(|&(motor, law)| {
             let case = Case::new(motor, law, Bus::Fixed, None)?;
             let spec = &case.drive.spec;
-            let waited = f64::from(spec.start_periods()) / 2.0 * spec.inverter.t_s;
-            let from = 60.0 / (6.0 * waited * f64::from(spec.motor.pole_pairs));
+            let from = spec.waiting_speed().expect("it waits") * 60.0 / TAU;
             Some((case, from))
         })
         .flat_map_iter(|(case, from)| {

@@ -408,7 +408,7 @@ impl<W: Word> Supervisor<W> {
         is_off
     }
 
-    /// Starts the bootstrap pre-charge; ignored when tripped or calibrating.
+    /// Starts the bootstrap pre-charge; ignored but in control, start and pre-charge.
     pub fn precharge(&mut self, limits: &Limits) {
         let may_start = matches!(self.mode, Mode::Run | Mode::Start | Mode::Precharge);
         if may_start && limits.precharge_periods > 0.0 {

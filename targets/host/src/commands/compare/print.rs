@@ -101,9 +101,9 @@ fn of_word(rows: &[Row], word: u32) -> String {
         )
     };
     format!(
-        "With words of {word} bits {step}; in closed loop the figure that differs most, {} of {controller} at {rpm:.0} rpm, does so by {}, {kept}{trips}.",
-        figure.figure,
+        "With words of {word} bits {step}; in closed loop the largest difference is {}, {kept} ({}; {controller} at {rpm:.0} rpm){trips}.",
         figure.text(),
+        figure.figure,
     )
 }
 
