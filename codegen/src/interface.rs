@@ -108,10 +108,22 @@ pub struct Interface {
     /// Periods without a call of `set_bus` after which the bus voltage is stale; none if it is
     /// fixed.
     pub bus_periods: Option<i32>,
+    /// Watch of the residual; with a `residual_timeout` only.
+    pub residual: Option<ResidualWatch>,
     /// Limits of samples, and start-up.
     pub limits: Limits,
     /// Units of the observations.
     pub units: Units,
+}
+
+/// Watch of the residual: what the currents are beyond the motor's data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ResidualWatch {
+    /// Name of the state word that counts the periods in which they did not follow the voltages, less
+    /// those in which they did.
+    pub word: &'static str,
+    /// Count at which the drive trips.
+    pub periods: i32,
 }
 
 /// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits. Of

@@ -154,6 +154,11 @@ typedef enum {
     HEXAGEN_FAULT_OVER_VOLTAGE = 6,
     /** The bus voltage that `set_bus` told was below `under_voltage`. */
     HEXAGEN_FAULT_UNDER_VOLTAGE = 7,
+    /**
+     * The currents did not follow the voltages for the `residual_timeout`: a dead current sensor, an
+     * open or exchanged phase, a sensor's wrong sign, or wrong motor data.
+     */
+    HEXAGEN_FAULT_RESIDUAL = 8,
     /** A current ADC was at an end of its range: count 0, the largest count, or more. */
     HEXAGEN_FAULT_ADC_RANGE = 1,
     /**
@@ -486,7 +491,8 @@ typedef struct {
  * `set_bus` tells. It cannot see, and nothing else here does:
  *
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
- *   mid-scale can let the true current rise to several times the trip level;
+ *   mid-scale can let the true current rise to several times the trip level. The option
+ *   `residual_timeout` notices most of these, after its time (HEXAGEN_FAULT_RESIDUAL);
  * - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
  * - a control interrupt that does not come: the last command stands;
  * - heat, shoot-through, and what is shorter than a control period;

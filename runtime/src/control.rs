@@ -85,6 +85,10 @@ pub trait Control: Sized + 'static {
     /// wherever it implements `MeasuredBus`.
     const TOLD_BUS: Option<fn(Word) -> BusWords<Self>> = None;
 
+    /// Whether the currents did not follow the voltages for the `residual_timeout`, with which the
+    /// macro sets it; else `None`.
+    const HAS_LOST_CURRENTS: Option<fn(&Self::State) -> bool> = None;
+
     /// Set-point word of a current: bits of a number with 16 fraction bits, ampere.
     fn current(bits: Word) -> Word;
     /// Set-point word of a torque: bits of a number with 16 fraction bits, newton metres.

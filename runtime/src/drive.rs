@@ -202,6 +202,11 @@ impl<C: Control> ControlLoop<'_, C> {
         if let Some(fault) = set_point.words.bus.pass_period() {
             trip(set_point, core, *sample, fault);
         }
+        if let Some(has_lost_currents) = C::HAS_LOST_CURRENTS
+            && has_lost_currents(&core.law)
+        {
+            trip(set_point, core, *sample, Fault::Residual);
+        }
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
         let checked = match core.supervisor.check(limits, sensors, sample, is_demanded) {

@@ -52,6 +52,9 @@ pub enum Fault {
     OverVoltage = 6,
     /// The bus voltage that `set_bus` told was below `under_voltage`.
     UnderVoltage = 7,
+    /// The currents did not follow the voltages for the `residual_timeout`: a dead current sensor, an
+    /// open or exchanged phase, a sensor's wrong sign, or wrong motor data.
+    Residual = 8,
     /// A current ADC was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,
     /// The Hall code was one that no sensors give (000, 111 or above; with sensors 60 degrees apart 010
@@ -78,6 +81,7 @@ impl Fault {
             5 => Some(Self::Offset),
             6 => Some(Self::OverVoltage),
             7 => Some(Self::UnderVoltage),
+            8 => Some(Self::Residual),
             _ => None,
         }
     }
@@ -90,6 +94,7 @@ impl fmt::Display for Fault {
             Self::OverCurrent => "a phase current is above the trip level",
             Self::OverVoltage => "the bus voltage is too high",
             Self::UnderVoltage => "the bus voltage is too low",
+            Self::Residual => "the currents do not follow the voltages",
             Self::Hall => "the Hall code is invalid",
             Self::Stall => "the rotor is stalled",
             Self::Offset => "a calibrated current offset is too far from its nominal value",
@@ -163,7 +168,7 @@ mod tests {
         for number in 0..7 {
             let mode = Mode::from_number(number);
             assert_eq!(mode as i32, number);
-            for number in 0..8 {
+            for number in 0..9 {
                 let fault = Fault::from_number(number);
                 for glitches in [0, 1, MOST_GLITCHES] {
                     let bits = Status::to_bits(mode, fault, glitches);
@@ -180,7 +185,7 @@ mod tests {
     fn a_fault_has_an_error_message() {
         let error: &dyn core::error::Error = &Fault::Hall;
         assert!(error.source().is_none());
-        for number in 1..=7 {
+        for number in 1..=8 {
             assert!(Fault::from_number(number).is_some_and(|fault| fault as i32 == number));
         }
     }

@@ -312,7 +312,8 @@ const fn is_hall_code(hall: u8) -> bool {
 /// [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see, and nothing else here does:
 ///
 /// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
-///   mid-scale can let the true current rise to several times the trip level;
+///   mid-scale can let the true current rise to several times the trip level. The option
+///   `residual_timeout` notices most of these, after its time ([`Fault::Residual`]);
 /// - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
 /// - a control interrupt that does not come: the last command stands;
 /// - heat, shoot-through, and what is shorter than a control period;

@@ -9,7 +9,11 @@ pub const MUTATED: &[Drive] = &[
     Drive {
         kind: "pdcc",
         motor: "trivedi-keshri-660w",
-        settings: &[("saturation", "torque_priority"), ("hall_capture", "timer")],
+        settings: &[
+            ("saturation", "torque_priority"),
+            ("hall_capture", "timer"),
+            ("emf", "watched"),
+        ],
     },
     Drive {
         kind: "pdcc",

@@ -129,6 +129,13 @@ const SHARED: &[Row] = &[
             ("model", &[("controller", "emf", "\"model\"")]),
             ("held", &[("controller", "emf", "\"held\"")]),
             ("observer", &[("controller", "emf", "\"observer\"")]),
+            (
+                "watched",
+                &[
+                    ("controller", "emf", "\"observer\""),
+                    ("controller", "residual_timeout", "\"3 ms\""),
+                ],
+            ),
         ],
     ),
     (
@@ -247,6 +254,14 @@ const LOOSE: &[Row] = &[
             (
                 "60_degrees",
                 &[("motor", "hall_codes", "[0, 1, 3, 7, 6, 4]")],
+            ),
+            (
+                "out_of_place",
+                &[(
+                    "motor",
+                    "hall_angles",
+                    "[\"-38 deg\", \"34 deg\", \"88 deg\", \"143 deg\", \"215 deg\", \"270 deg\"]",
+                )],
             ),
             (
                 "bridged_60_degrees",

@@ -355,3 +355,73 @@ fn a_stall_is_counted_under_demand_while_running() {
     quiet(&mut drive, 1);
     assert_eq!(drive.status().fault, Some(Fault::Stall));
 }
+
+hexagen::controller! {
+    /// As `Guarded`, with the currents watched: 60 periods.
+    pub Watched {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_torque: 3.3 Nm,
+            rated_speed: 2000 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+            calibration_samples: 16,
+            precharge: 200 us,
+        },
+        controller: pdcc { residual_timeout: 3 ms },
+    }
+}
+
+/// A drive whose rotor is known to stand, at 10 A.
+fn watched() -> Drive<Watched> {
+    let mut drive = Drive::<Watched>::new();
+    while !drive.status().is_running() {
+        step(&mut drive, [ZERO; 2], HALL);
+    }
+    drive.set_current(I16F16::from_num(10));
+    drive
+}
+
+#[test]
+fn currents_that_do_not_follow_the_voltages_trip_after_their_time_and_no_sooner() {
+    // No current flows, whatever the voltage.
+    let mut drive = watched();
+    let first = (1..).find(|_| {
+        step(&mut drive, [ZERO; 2], HALL);
+        drive.status().fault.is_some()
+    });
+    assert_eq!(drive.status().fault, Some(Fault::Residual));
+    // The voltage of the first step takes effect in the second, and shows in the third; the trip comes
+    // with the period behind the sixtieth.
+    assert_eq!(first, Some(2 + 60 + 1));
+    assert_eq!(step(&mut drive, [ZERO; 2], HALL), Legs::OFF);
+    let trip = drive.trip().expect("a trip is kept");
+    assert_eq!(trip.fault, Fault::Residual);
+    drive.reset();
+    assert_eq!(drive.status().fault, None);
+
+    // Periods that follow take back what others counted: 55 of 60, then as many sound ones, is no trip.
+    let mut drive = watched();
+    for _ in 0..20 {
+        for _ in 0..2 + 55 {
+            step(&mut drive, [ZERO; 2], HALL);
+        }
+        drive.set_current(I16F16::ZERO);
+        for _ in 0..60 {
+            step(&mut drive, [ZERO; 2], HALL);
+        }
+        assert_eq!(drive.status().fault, None);
+        drive.set_current(I16F16::from_num(10));
+    }
+}

@@ -353,18 +353,17 @@ impl<'b> RotorWords<'b> {
             let omega_next = lost.choose(0, seen.omega);
             let tracking = edges_next.is(2);
             let forward = seen.direction.is_above(0);
-            let progress = omega_next.mul_limited(seen.age, last_of_sector(l));
+            let last = last_of_sector(l, hall.sector);
+            let progress = omega_next.mul_limited(seen.age, last);
         }
         self.edges.set(edges_next);
         self.omega.set(omega_next);
-        let inside = forward.choose(progress, last_of_sector(l) - progress);
-        let doc = "Half a sector: 30 degrees.";
-        let centre = l.rounded_number("sector_centre", SIXTH / 2, sixth_turn(0.5), doc);
-        let inside = tracking.choose(inside, centre);
+        let inside = forward.choose(progress, last - progress);
+        let inside = tracking.choose(inside, centre_of_sector(l, last));
         let doc = "Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned();
         let exact = (Exact::Within(1), None);
-        let starts =
-            l.b.rounded_table("sector_start", sector_starts(), exact, &[doc]);
+        let starts = sector_starts(l.spec.motor.hall_angles);
+        let starts = l.b.rounded_table("sector_start", starts, exact, &[doc]);
         named! {
             let theta = starts.at(hall.sector).angle_add(inside);
             let turn = turn_of_period(l, omega_next);
@@ -412,18 +411,39 @@ fn greatest_age<'b>(l: &Lowering<'b>, age_max: i64) -> Expr<'b> {
     l.number("age_max", age_max, doc)
 }
 
-fn last_of_sector<'b>(l: &Lowering<'b>) -> Expr<'b> {
-    let doc = "Last angle of a sector, from its first: 60 degrees less 2^-32 of a turn.";
-    l.rounded_number("sector_last", SIXTH - 1, sixth_turn(1.0), doc)
+/// The last angle of a sector, from its first.
+fn last_of_sector<'b>(l: &Lowering<'b>, sector: Expr<'b>) -> Expr<'b> {
+    if l.spec.motor.has_even_halls() {
+        let doc = "Last angle of a sector, from its first: 60 degrees less 2^-32 of a turn.";
+        return l.rounded_number("sector_last", SIXTH - 1, sixth_turn(1.0), doc);
+    }
+    let starts = sector_starts(l.spec.motor.hall_angles);
+    let width = |sector: usize| starts[sector % 6 + 1].wrapping_sub(starts[sector]);
+    let last = std::iter::once(0).chain((1..7).map(|sector| width(sector) - 1));
+    let doc = "Last angle of sectors 1 to 6, from their first.".to_owned();
+    let exact = (Exact::Within(2), None);
+    let table =
+        l.b.rounded_table("sector_last", last.collect(), exact, &[doc]);
+    table.at(sector).named("last_inside")
 }
 
-/// ceil((60 (sector - 1) - 30) / 360 2^32) as wrapped words; 0 for sector 0.
-fn sector_starts() -> Vec<i32> {
-    let start = |sector: i64| {
-        let numerator = (2 * (sector - 1) - 1) * (1_i64 << 32);
-        -(-numerator).div_euclid(12) as u32 as i32
+/// Half a sector.
+fn centre_of_sector<'b>(l: &Lowering<'b>, last: Expr<'b>) -> Expr<'b> {
+    if l.spec.motor.has_even_halls() {
+        let doc = "Half a sector: 30 degrees.";
+        return l.rounded_number("sector_centre", SIXTH / 2, sixth_turn(0.5), doc);
+    }
+    last >> 1
+}
+
+/// Angles of Hall edges, degrees, as wrapped words, rounded up; 0 for sector 0.
+fn sector_starts(degrees: [f64; 6]) -> Vec<i32> {
+    let start = |degrees: f64| {
+        // Exact for whole degrees; the tolerance of other decimals is far below a word.
+        let words = degrees / 360.0 * 32_f64.exp2();
+        (words - 1e-4).ceil() as i64 as u32 as i32
     };
-    std::iter::once(0).chain((1..7).map(start)).collect()
+    std::iter::once(0).chain(degrees.map(start)).collect()
 }
 
 /// The rotor's angle per control period at this speed.

@@ -159,6 +159,8 @@ codes! {
     EstimateTurnsTooFar = 602,
     /// A mean over block commutation was probably taken for a peak.
     MeanForPeak = 603,
+    /// At rated speed the bus leaves part of the rated current.
+    RatingBeyondBus = 604,
     /// The trip current is far above the largest set-point.
     TripFarAbove = 610,
     /// Hysteresis control may reach the trip current without a fault.

@@ -221,7 +221,7 @@ impl Code {
                 "Raise the PWM frequency, or check R and L and their bases.",
             ),
             Self::BusTooLow => say(
-                "The line-to-line EMF at rated speed and what rated current drops in two phases exceed the bus: no steady state reaches the rating.",
+                "The line-to-line EMF at rated speed and what rated current drops in two phases exceed the bus by far: a value is wrong.",
                 "rated_speed = \"5000 rpm\"",
                 "rated_speed = \"2000 rpm\"",
                 "Data sheets often print the no-load speed as speed: write it as `no_load_speed`, and the speed under load as `rated_speed`; else check the bases of EMF and resistance.",
@@ -457,6 +457,12 @@ impl Code {
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"\nback_emf = \"0.1648 V/(rad/s) block_mean\"",
                 "Write `block_mean` in place of `line_to_line peak`.",
+            ),
+            Self::RatingBeyondBus => say(
+                "The line-to-line EMF at rated speed leaves less of the bus than rated current drops in two phases: rated torque ends below rated speed.",
+                "rated_speed = \"2500 rpm\"",
+                "rated_speed = \"2000 rpm\"",
+                "Nothing is wrong with the drive: it makes the torque that the message states. Raise the bus, or state the speed that is meant under load.",
             ),
             Self::TripFarAbove => say(
                 "A fault makes as much current as the trip level before the drive stops.",

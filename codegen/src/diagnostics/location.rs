@@ -68,15 +68,28 @@ impl Location {
             Self::Variant { .. } => format!("{name}={}", value.replace(' ', "")),
             Self::File { .. } => {
                 let name = if name == "controller" { "kind" } else { name };
-                let is_bare = value.starts_with(['"', '[', '{'])
-                    || value.parse::<f64>().is_ok_and(f64::is_finite);
-                if is_bare {
-                    format!("{name} = {value}")
-                } else {
-                    format!("{name} = \"{value}\"")
+                let list = value
+                    .strip_prefix('[')
+                    .and_then(|list| list.strip_suffix(']'));
+                match list {
+                    Some(list) => {
+                        let items: Vec<String> = list.split(", ").map(quoted).collect();
+                        format!("{name} = [{}]", items.join(", "))
+                    }
+                    None => format!("{name} = {}", quoted(value)),
                 }
             }
         }
+    }
+}
+
+/// A value in a file: numbers are bare, all else is in quotes.
+fn quoted(value: &str) -> String {
+    let is_bare = value.starts_with(['"', '{']) || value.parse::<f64>().is_ok_and(f64::is_finite);
+    if is_bare {
+        value.to_owned()
+    } else {
+        format!("\"{value}\"")
     }
 }
 

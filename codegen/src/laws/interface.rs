@@ -3,12 +3,13 @@
 use super::Description;
 use super::accuracy::accuracy_notes;
 use super::constants::{constants, ratios};
-use super::current_loop::LoopDesign;
+use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
 use crate::blocks::Scale;
 use crate::diagnostics::{engineering, frequency, rpm};
 use crate::interface::{
-    Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors, Unit, Units,
+    Interface, Limits, OptionEntry, PublicConstant, ResidualWatch, SensedPhases, Sensor, Sensors,
+    Unit, Units,
 };
 use crate::scaling::Scaled;
 use crate::spec::{self, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
@@ -34,6 +35,10 @@ pub fn interface(
         delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         bus_periods: inverter.bus_periods().map(|periods| periods as i32),
+        residual: (spec.controller.common().residual_periods).map(|periods| ResidualWatch {
+            word: RESIDUAL_COUNT,
+            periods: periods as i32,
+        }),
         limits: limits(spec, scaled.scale),
         units: units(spec, scaled.scale),
     }

@@ -55,6 +55,7 @@ fn sensors(inverter: &InverterSpec) -> String {
 pub fn wiring(spec: &Spec) -> Vec<String> {
     let inverter = &spec.inverter;
     let codes = spec.motor.hall_codes.map(|code| format!("{code:03b}"));
+    let angles = spec.motor.hall_angles.map(|angle| format!("{angle} deg"));
     let mut lines = vec![
         String::new(),
         "# Signs and wiring".to_owned(),
@@ -66,6 +67,7 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         "|---|---|---|---|---|---|---|".to_owned(),
         format!("| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |", codes.join(" | ")),
         format!("| current into, out of phase (positive set-point) | {} |", pairs().join(" | ")),
+        format!("| begins at, electrical | {} |", angles.join(" | ")),
         String::new(),
         "More: `hexagen::conventions`.".to_owned(),
     ];
@@ -135,6 +137,11 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
         }
     });
+    if let Some(periods) = spec.controller.common().residual_periods {
+        lines.push(format!(
+            "So do {periods} periods more with currents that do not follow the voltages than with ones that do."
+        ));
+    }
     if inverter.hall_glitches > 0 {
         lines.push(format!(
             "A disturbed Hall code is bridged for {} samples in a row, and trips it then.",

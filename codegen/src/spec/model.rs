@@ -33,11 +33,10 @@ impl Spec {
             }
     }
 
-    /// Greatest age of a valid Hall edge, ticks: 60 electrical degrees at the minimum speed, at
-    /// least 8.
+    /// Greatest age of a valid Hall edge, ticks: the widest sector at the minimum speed, at least 8.
     pub fn age_max(&self) -> u32 {
         let omega_e = self.inverter.minimum_speed * f64::from(self.motor.pole_pairs);
-        (self.ticks_per_second() * FRAC_PI_3 / omega_e)
+        (self.ticks_per_second() * FRAC_PI_3 * self.motor.widest_sector() / omega_e)
             .floor()
             .max(8.0) as u32
     }
@@ -52,7 +51,10 @@ impl Spec {
     /// than the largest current. 0 if it never takes more.
     pub fn brake_periods(&self) -> u32 {
         self.shorted_sector(self.inverter.max_current)
-            .map_or(0, |sector| (sector / self.inverter.t_s).ceil() as u32)
+            .map_or(0, |sector| {
+                let sector = sector * self.motor.widest_sector();
+                (sector / self.inverter.t_s).ceil() as u32
+            })
     }
 
     /// Control periods that a start waits at most for the rotor's angle: two sectors at
@@ -60,6 +62,7 @@ impl Spec {
     pub fn start_periods(&self) -> u16 {
         self.waiting_speed().map_or(0, |speed| {
             let sector = FRAC_PI_3 / (speed * f64::from(self.motor.pole_pairs));
+            let sector = sector * self.motor.widest_sector();
             // A hair less, for the rounding of the way to the speed and back.
             let periods = 2.0 * (sector / self.inverter.t_s - 1e-9).ceil();
             periods.min(f64::from(u16::MAX)) as u16
@@ -155,7 +158,21 @@ pub struct MotorSpec {
     pub resistance_tolerance: f64,
     /// Hall codes of sectors S1 to S6 (Ha in bit 2).
     pub hall_codes: [u8; 6],
+    /// Electrical angles of the Hall edges at which sectors S1 to S6 begin, forward: degrees, S1 about
+    /// -30, each at most 20 from its place.
+    pub hall_angles: [f64; 6],
 }
+
+/// Widths of sectors S1 to S6 over 60 degrees.
+pub(crate) fn sector_widths(hall_angles: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|k| {
+        let next = hall_angles[(k + 1) % 6];
+        (next - hall_angles[k]).rem_euclid(360.0) / 60.0
+    })
+}
+
+/// Those of sensors in their places.
+pub const HALL_ANGLES: [f64; 6] = [-30.0, 30.0, 90.0, 150.0, 210.0, 270.0];
 
 impl MotorSpec {
     /// Turn of the rotor at rated speed in `t_s` seconds, electrical degrees.
@@ -172,6 +189,18 @@ impl MotorSpec {
     pub fn torque_rating(&self) -> f64 {
         self.rated_torque
             .unwrap_or(self.rated_current * self.rated_torque_constant())
+    }
+
+    /// Whether all Hall sensors are in their places.
+    pub fn has_even_halls(&self) -> bool {
+        self.hall_angles == HALL_ANGLES
+    }
+
+    /// Width of the widest sector over 60 degrees.
+    pub fn widest_sector(&self) -> f64 {
+        sector_widths(&self.hall_angles)
+            .into_iter()
+            .fold(1.0, f64::max)
     }
 
     /// Hall sensors that the drive inverts first, as bits of the code: one of sensors that stand 60

@@ -35,6 +35,9 @@ impl Spec {
         }
         text.number("torque_constant", self.torque_constant());
         text.number("hall_codes", motor.hall_codes);
+        if !motor.has_even_halls() {
+            text.number("hall_angles", motor.hall_angles);
+        }
     }
 
     fn write_inverter(&self, text: &mut Text, inverter: &InverterSpec) {
@@ -179,8 +182,8 @@ impl Text {
 mod tests {
     use crate::spec::{
         BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor, Discretisation,
-        EmfShape, EmfSource, HallCapture, InverterSpec, LimitRule, LoopOptions, Modulation,
-        MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
+        EmfShape, EmfSource, HALL_ANGLES, HallCapture, InverterSpec, LimitRule, LoopOptions,
+        Modulation, MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
     };
 
     fn hub_drive() -> Spec {
@@ -202,6 +205,7 @@ mod tests {
                 inductance_tolerance: 0.1,
                 resistance_tolerance: 0.3,
                 hall_codes: [1, 5, 4, 6, 2, 3],
+                hall_angles: HALL_ANGLES,
             },
             inverter: InverterSpec {
                 v_bus: 48.0,
@@ -249,6 +253,7 @@ mod tests {
                     commutation_timeout: 8,
                     speed: None,
                     slew_rate: None,
+                    residual_periods: None,
                 },
             }),
         }

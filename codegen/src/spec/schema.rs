@@ -66,6 +66,13 @@ pub(crate) const MOTOR: &[Rule] = &[
     quantity("inductance_tolerance", &[D::Ratio], 0.0, 0.9, "10 %"),
     quantity("resistance_tolerance", &[D::Ratio], 0.0, 0.9, "30 %"),
     Rule::of("hall_codes", Kind::Integers, "[1, 5, 4, 6, 2, 3]"),
+    quantity(
+        "hall_angles",
+        &[D::Angle],
+        -360.0,
+        360.0,
+        "[-26 deg, 31 deg, 90 deg, 150 deg, 212 deg, 270 deg]",
+    ),
 ];
 
 /// Fields of the inverter.
@@ -148,9 +155,13 @@ const ALTERNATIVES: [[&str; 2]; 11] = [
     ["adc_gain", "adc_reference"],
 ];
 
-/// Whether the field takes a list in brackets, a value of each sensed phase, in place of one.
+/// Whether the field takes a list of values in brackets: one of each sensed phase in place of one for
+/// all, or of each Hall edge.
 pub(crate) fn takes_each(name: &str) -> bool {
-    matches!(name, "adc_gain" | "adc_offset" | "adc_inverted")
+    matches!(
+        name,
+        "adc_gain" | "adc_offset" | "adc_inverted" | "hall_angles"
+    )
 }
 
 /// Whether the one field replaces the other.

@@ -2,7 +2,7 @@
 
 use crate::{Inputs, limits, sensors};
 use hexagen::{Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
-use hexagen_codegen::interface::Interface;
+use hexagen_codegen::interface::{Interface, ResidualWatch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter};
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
@@ -20,6 +20,8 @@ pub struct Interpreted<'g> {
     limits: Limits,
     sensors: Sensors,
     bus: Option<BusWatch>,
+    /// Index of the residual watch's state word, and the count at which it trips.
+    residual: Option<(usize, i32)>,
     places: Places,
     escape: Arc<OnceLock<Escape>>,
 }
@@ -103,6 +105,10 @@ impl<'g> Interpreted<'g> {
                 left: 0,
                 periods,
             }),
+            residual: interface.residual.map(|ResidualWatch { word, periods }| {
+                let place = program.states.iter().position(|state| state.name == word);
+                (place.expect("the word of the residual watch"), periods)
+            }),
             places: Places::of(program).expect("the program of a drive"),
             escape: Arc::default(),
         }
@@ -177,6 +183,11 @@ impl Subject for Interpreted<'_> {
     fn step(&mut self, sample: &Sample) -> Legs {
         if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
             self.supervisor.trip(fault);
+        }
+        if let Some((place, periods)) = self.residual
+            && self.machine.state[place] >= periods
+        {
+            self.supervisor.trip(Fault::Residual);
         }
         self.try_step(sample).unwrap_or_else(|escape| {
             self.escape.get_or_init(|| escape);

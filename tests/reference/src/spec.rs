@@ -50,9 +50,24 @@ pub struct Motor {
     pub torque_constant: f64,
     /// Hall codes of sectors 1 to 6, Ha in bit 2.
     pub hall_codes: [u8; 6],
+    /// Electrical angles at which these sectors begin, degrees; none where all sensors are in place.
+    #[serde(default)]
+    pub hall_angles: Option<[f64; 6]>,
 }
 
+/// Electrical angles at which sectors 1 to 6 begin where all sensors are in place, degrees.
+pub const EVEN_EDGES: [f64; 6] = [-30.0, 30.0, 90.0, 150.0, 210.0, 270.0];
+
 impl Motor {
+    /// Of each sector, where it begins beyond its place, and its width, radian.
+    pub fn sectors_beyond_places(&self) -> [[f64; 2]; 6] {
+        let begins = self.hall_angles.unwrap_or(EVEN_EDGES);
+        std::array::from_fn(|k| {
+            let width = (begins[(k + 1) % 6] - begins[k]).rem_euclid(360.0);
+            [begins[k] - EVEN_EDGES[k], width].map(f64::to_radians)
+        })
+    }
+
     /// The sensors that are turned round where all three stand 60 degrees apart, as bits of the code:
     /// the two codes that do not occur are then those of equal sensors. Else 0.
     pub fn hall_inverted(&self) -> u8 {

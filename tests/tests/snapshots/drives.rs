@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 22] = [
+const VARIANTS: [(&str, &str, Fields); 23] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -88,6 +88,15 @@ const VARIANTS: [(&str, &str, Fields); 22] = [
         "pdcc.dead-time",
         "pdcc:reference=quasi_square,emf=held,dead_time_compensation=on",
         &[("inverter", "dead_time", "900 ns")],
+    ),
+    (
+        "pdcc.watched",
+        "pdcc:residual_timeout=5ms",
+        &[(
+            "motor",
+            "hall_angles",
+            "[-26 deg, 30 deg, 90 deg, 150 deg, 214 deg, 270 deg]",
+        )],
     ),
     (
         "fcs-mpc.all",

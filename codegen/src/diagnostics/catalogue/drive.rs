@@ -154,6 +154,38 @@ pub fn bus_too_low(
     )
 }
 
+/// A rating of which the bus leaves part of the current at rated speed. In volt: the bus; EMF line to
+/// line at rated speed; drop of rated current in two phases. What is left at rated speed, ampere and
+/// newton metres; the speed at rated current, mechanical rad/s.
+pub fn rating_beyond_bus(
+    bus: &Part,
+    [speed, current]: [&Part; 2],
+    [_, emf, drop]: [f64; 3],
+    [left, torque, reached]: [f64; 3],
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::RatingBeyondBus,
+            &speed.location,
+            format!(
+                "`{}`: {}: there the bus of {} leaves {} of {}, {} (the EMF is {} line to line, 2 R I {}); with the rated current it reaches {}; raise the bus to {}, or lower `{}`",
+                speed.field,
+                speed.given,
+                bus.given,
+                engineering(left, "A"),
+                current.quoted(),
+                engineering(torque, "Nm"),
+                engineering(emf, "V"),
+                engineering(drop, "V"),
+                rpm_at_most(reached),
+                engineering(at_least(emf + drop), "V"),
+                speed.field,
+            ),
+        ),
+        &[bus, current],
+    )
+}
+
 /// What contradicts the EMF constant.
 #[derive(Clone, Debug)]
 pub struct Contradiction<'a> {

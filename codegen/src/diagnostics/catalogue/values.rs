@@ -311,6 +311,17 @@ pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
     )
 }
 
+/// Angles of Hall edges far from their places; `why` is a clause.
+pub fn hall_angles(at: &Location, given: &str, why: &str, farthest: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::HallCodes,
+        at,
+        format!(
+            "`hall_angles`: {given}: {why}; give the electrical angles at which sectors 1 to 6 begin, each at most {farthest} deg from -30, 30, 90, 150, 210, 270 deg, and check the order of `hall_codes` if they are farther"
+        ),
+    )
+}
+
 /// A gap of Hall codes in which the rotor may leave the next sector.
 pub fn hall_glitches(at: &Location, given: &str, most: u32, maximum_speed: &str) -> Diagnostic {
     let remedy = match most {

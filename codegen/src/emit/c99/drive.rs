@@ -4,7 +4,7 @@ use super::function::{Step, emit_setter};
 use super::layout::{INDENT, wrapped};
 use super::names::{Names, number, typed_number};
 use crate::emit::path::SINGLE;
-use crate::interface::{Interface, Limits, SensedPhases, Sensor, Sensors, Unit};
+use crate::interface::{Interface, Limits, ResidualWatch, SensedPhases, Sensor, Sensors, Unit};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
@@ -116,7 +116,7 @@ impl Drive<'_> {
 
     /// The public functions, and the private ones that they call.
     pub(super) fn functions(&self) -> String {
-        let mut text = self.keep_trip() + &self.trip_on_bus() + &self.step_at_rest();
+        let mut text = self.keep_trip() + &self.trip_unsampled() + &self.step_at_rest();
         let setters = self.program.setters.iter();
         text.extend(
             setters.map(|(_, setter)| emit_setter(self.program, setter, self.names).stages),
@@ -247,9 +247,9 @@ impl Drive<'_> {
         )
     }
 
-    /// The trip for a bus voltage; empty where it is fixed.
-    fn trip_on_bus(&self) -> String {
-        if !self.has_bus() {
+    /// The trip for what no sample shows: a bus voltage, or lost currents; empty without either.
+    fn trip_unsampled(&self) -> String {
+        if !self.has_bus() && self.interface.residual.is_none() {
             return String::new();
         }
         let inner = INDENT.repeat(2);
@@ -257,7 +257,7 @@ impl Drive<'_> {
             .names
             .comment("", &["Trips the drive, unless it is tripped already."]);
         let head = format!(
-            "static void trip_on_bus({}, const hexagen_sample *sample, hexagen_fault fault)",
+            "static void trip_unsampled({}, const hexagen_sample *sample, hexagen_fault fault)",
             self.drive()
         );
         format!(
@@ -351,8 +351,16 @@ impl Drive<'_> {
             let inner = INDENT.repeat(2);
             let _ = write!(
                 body,
-                "{inner}trip_on_bus(drive, sample, fault);\n{INDENT}}}\n"
+                "{inner}trip_unsampled(drive, sample, fault);\n{INDENT}}}\n"
             );
+        }
+        if let Some(ResidualWatch { word, periods }) = self.interface.residual {
+            let word = self.names.local(word);
+            body.push_str(&lines(&[
+                &format!("if (drive->state.{word} >= {}) {{", typed_number(periods)),
+                &format!("{INDENT}trip_unsampled(drive, sample, HEXAGEN_FAULT_RESIDUAL);"),
+                "}",
+            ]));
         }
         let check = format!(
             "if (!hexagen_check(&drive->supervisor, &limits, sample, &drive->{}, &checked)) {{",

@@ -5,8 +5,8 @@ use super::imports::unsettled;
 use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};
 use crate::interface::{
-    FormatEntry, Interface, Limits, PublicConstant, PublicValue, Rounding, SensedPhases, Sensor,
-    Sensors, Unit,
+    FormatEntry, Interface, Limits, PublicConstant, PublicValue, ResidualWatch, Rounding,
+    SensedPhases, Sensor, Sensors, Unit,
 };
 use crate::ir::{Demand, Program, Setter};
 
@@ -61,6 +61,7 @@ impl Types<'_> {
         let Interface {
             spec_toml,
             formats,
+            residual,
             limits,
             units,
             ..
@@ -72,6 +73,12 @@ impl Types<'_> {
             quote!(const SENSORS: Sensors = #sensors;)
         });
         let limits = limits_of(limits);
+        let residual = residual.map(|ResidualWatch { word, periods }| {
+            let (word, periods) = (snake(word), number(i64::from(periods)));
+            quote! {
+                const HAS_LOST_CURRENTS: Option<fn(&State) -> bool> = Some(|state| state.#word >= #periods);
+            }
+        });
         let [ampere, volt, volt_per_count, rpm] =
             [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
         let sectors = units
@@ -129,6 +136,7 @@ impl Types<'_> {
                 const BUS: #bus_type = #bus;
                 #speed_word
                 #told_words
+                #residual
 
                 #current
                 #torque

@@ -19,6 +19,8 @@ pub(super) struct Emf<'b> {
     pub expected: Phases<'b>,
     /// Error of the modelled EMF, q and d.
     pub error: Option<[Expr<'b>; 2]>,
+    /// Count of the residual watch, and its new value.
+    pub residual_count: Option<(Memory<'b>, Expr<'b>)>,
 }
 
 /// Shift of the sums of products that correct the error: 1/16 of a sum is 3/32 of a component.
@@ -44,6 +46,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         currents: Phases<'b, 3>,
         sector: Expr<'b>,
         rotor: Option<(&Rotor<'b>, Option<Phases<'b>>)>,
+        set_point: Expr<'b>,
         third: Coefficient,
         outgoing: Option<Expr<'b>>,
     ) -> Option<Emf<'b>> {
@@ -60,10 +63,11 @@ impl<'b> CurrentLoop<'_, 'b> {
                     present: model.present,
                     expected: model.present,
                     error: None,
+                    residual_count: None,
                 });
             }
             (Some((rotor, Some(shape))), EmfSource::Observer) => {
-                return self.observe_emf(words, i, rotor, shape);
+                return self.observe_emf(words, i, rotor, shape, set_point);
             }
             _ => {}
         }
@@ -75,6 +79,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             present,
             expected: present,
             error: None,
+            residual_count: None,
         })
     }
 
@@ -130,6 +135,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         i: Phases<'b>,
         rotor: &Rotor<'b>,
         shape: Phases<'b>,
+        set_point: Expr<'b>,
     ) -> Option<Emf<'b>> {
         let l = self.l;
         let memories = words.emf_error?;
@@ -160,6 +166,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         let doc = "Error of the modelled EMF, after one step";
         l.state_volts("e_error_q", q, doc);
         l.state_volts("e_error_d", d, doc);
+        let watch = words.residual;
+        let residual_count = watch.map(|watch| watch.watch(l, residual, [q, d], rotor, set_point));
         let doc = "EMF over the target period: the modelled one plus its error, which turns with the rotor.";
         l.b.stage("observe_emf", &[doc]);
         let error = Phases([
@@ -181,6 +189,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             present,
             expected: present,
             error: Some([q, d]),
+            residual_count,
         })
     }
 

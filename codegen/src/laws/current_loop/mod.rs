@@ -7,11 +7,13 @@ mod design;
 mod emf;
 mod held;
 mod observer;
+mod residual;
 mod stability;
 mod words;
 
 pub use design::LoopDesign;
 pub use held::{Held, LeftOver};
+pub use residual::RESIDUAL_COUNT;
 pub use stability::{LinearLoop, SEARCHED, SeenEmf, StableRange};
 pub use words::{EmfUse, Needs, Words};
 
@@ -96,6 +98,8 @@ pub struct Front<'b> {
     pub e_expected: Option<Phases<'b>>,
     /// Error of the modelled EMF, q and d; with an observer only.
     pub emf_error: Option<[Expr<'b>; 2]>,
+    /// Count of the residual watch, and its new value; with a `residual_timeout` only.
+    pub residual_count: Option<(Memory<'b>, Expr<'b>)>,
     /// The folded words; with a held EMF only.
     pub held: Option<Held<'b>>,
     /// Word of the set-point's source, and its new value: the integral of the speed regulator, or the
@@ -180,6 +184,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             currents,
             sector_seen,
             rotor.map(|rotor| (rotor, shape)),
+            j,
             third,
             outgoing,
         );
@@ -203,6 +208,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             e_now,
             e_expected: emf.map(|emf| emf.expected),
             emf_error: emf.and_then(|emf| emf.error),
+            residual_count: emf.and_then(|emf| emf.residual_count),
             held,
             of_set_point: regulated
                 .map(|regulated| regulated.integral)
@@ -418,6 +424,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             remembered.extend(self.fold(held, left_over));
         }
         remembered.extend(front.of_set_point);
+        remembered.extend(front.residual_count);
         if let (Some(commutation), Some(rule)) = (front.commutation, words.pair) {
             remembered.extend(rule.sector_prev.map(|word| (word, front.sector)));
             remembered.push((rule.left, commutation.left));

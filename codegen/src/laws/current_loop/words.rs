@@ -1,6 +1,7 @@
 //! State words of the shared step, each only if the variant needs it.
 
 use super::CurrentLoop;
+use super::residual::ResidualWatch;
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{
     BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator, direction_word, sector_word,
@@ -76,6 +77,8 @@ pub struct Words<'b> {
     pub e_next: Option<[Memory<'b>; 2]>,
     /// Error of the modelled EMF, q and d.
     pub emf_error: Option<[Memory<'b>; 2]>,
+    /// Residual watch.
+    pub residual: Option<ResidualWatch<'b>>,
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
@@ -160,6 +163,8 @@ impl<'b> CurrentLoop<'_, 'b> {
                     it over sqrt(3); words of voltage.";
                 l.memories(["e_error_q", "e_error_d"], Interval::new(-limit, limit - 1), doc)
             }),
+            residual: (options.residual_periods)
+                .map(|periods| ResidualWatch::new(l, periods, set_point)),
         }
     }
 

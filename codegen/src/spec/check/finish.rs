@@ -136,7 +136,7 @@ fn hall_glitches(
     let Some(pole_pairs) = motor.pole_pairs.filter(|_| inverter.hall_glitches > 0) else {
         return inverter.hall_glitches;
     };
-    let sector = FRAC_PI_3 / (maximum_speed * f64::from(pole_pairs));
+    let sector = FRAC_PI_3 * motor.narrowest_sector() / (maximum_speed * f64::from(pole_pairs));
     let most = (sector / t_s - 1.0).floor();
     if f64::from(inverter.hall_glitches) > most {
         let part = reader.part("hall_glitches", String::new);

@@ -2,11 +2,12 @@
 
 use super::emf::{self, Emf, Winding};
 use super::reader::{Given, Reader};
-use crate::diagnostics::{Collector, catalogue, engineering};
+use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
+use crate::spec::model::sector_widths;
 use crate::spec::schema;
 use crate::spec::units::Dimension;
-use crate::spec::{EmfShape, MotorSpec};
+use crate::spec::{EmfShape, HALL_ANGLES, MotorSpec};
 
 /// The motor as far as it could be read.
 pub(super) struct Motor<'a> {
@@ -27,6 +28,7 @@ pub(super) struct Motor<'a> {
     pub inductance_tolerance: f64,
     pub resistance_tolerance: f64,
     pub hall_codes: [u8; 6],
+    pub hall_angles: [f64; 6],
 }
 
 pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a> {
@@ -75,10 +77,25 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
             .plain_quantity(errors, "resistance_tolerance")
             .map_or(0.3, |given| given.si),
         hall_codes: read_hall_codes(reader, errors).unwrap_or([1, 5, 4, 6, 2, 3]),
+        hall_angles: read_hall_angles(reader, errors).unwrap_or(HALL_ANGLES),
     }
 }
 
 impl Motor<'_> {
+    /// Width of the widest sector over 60 degrees.
+    pub fn widest_sector(&self) -> f64 {
+        sector_widths(&self.hall_angles)
+            .into_iter()
+            .fold(1.0, f64::max)
+    }
+
+    /// Width of the narrowest.
+    pub fn narrowest_sector(&self) -> f64 {
+        sector_widths(&self.hall_angles)
+            .into_iter()
+            .fold(1.0, f64::min)
+    }
+
     /// The checked motor. None if something is missing or in error.
     pub fn finish(&self) -> Option<MotorSpec> {
         Some(MotorSpec {
@@ -95,6 +112,7 @@ impl Motor<'_> {
             inductance_tolerance: self.inductance_tolerance,
             resistance_tolerance: self.resistance_tolerance,
             hall_codes: self.hall_codes,
+            hall_angles: self.hall_angles,
         })
     }
 }
@@ -276,4 +294,45 @@ fn read_hall_codes(reader: &Reader, errors: &mut Collector) -> Option<[u8; 6]> {
         return None;
     }
     codes.try_into().ok()
+}
+
+/// Farthest place of a Hall edge from where it belongs, electrical degrees: more is rather a wrong
+/// order of the codes.
+const FARTHEST: f64 = 20.0;
+
+/// Six angles, each near its place, which a whole turn more or less does not change.
+fn read_hall_angles(reader: &Reader, errors: &mut Collector) -> Option<[f64; 6]> {
+    const FIELD: &str = "hall_angles";
+    let angles = reader.each(FIELD, |one| {
+        one.plain_quantity(errors, FIELD).map(|given| given.si)
+    })?;
+    let errors_of: Vec<f64> = angles
+        .iter()
+        .zip(HALL_ANGLES.iter().cycle())
+        .map(|(angle, place)| (angle - place + 180.0).rem_euclid(360.0) - 180.0)
+        .collect();
+    let far = errors_of
+        .iter()
+        .position(|error| error.abs() > FARTHEST + 1e-9);
+    let problem = match far {
+        _ if angles.len() != 6 => Some(format!("{} angles instead of 6", angles.len())),
+        Some(k) => Some(format!(
+            "that of sector {} is {} deg from its place, {} deg",
+            k + 1,
+            significant(errors_of[k].abs()),
+            HALL_ANGLES[k],
+        )),
+        None => None,
+    };
+    if let Some(problem) = problem {
+        let part = reader.part(FIELD, String::new);
+        errors.push(catalogue::hall_angles(
+            &part.location,
+            &part.given,
+            &problem,
+            FARTHEST,
+        ));
+        return None;
+    }
+    Some(std::array::from_fn(|k| HALL_ANGLES[k] + errors_of[k]))
 }

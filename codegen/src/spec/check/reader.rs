@@ -570,7 +570,7 @@ fn within(
     // A decimal limit and the same value in another unit may differ in the last bit.
     let slack = 1e-9;
     let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
-    if given.si < 0.0 || (given.si == 0.0 && low > 0.0) {
+    if low >= 0.0 && (given.si < 0.0 || (given.si == 0.0 && low > 0.0)) {
         // Limits that only exclude zero are not shown.
         let bounded = high < f64::MAX;
         let error = if low > 0.0 && bounded {
@@ -583,7 +583,7 @@ fn within(
         errors.push(error);
         return false;
     }
-    let inside = given.si >= low * (1.0 - slack) && given.si <= high * (1.0 + slack);
+    let inside = given.si >= low - slack * low.abs() && given.si <= high * (1.0 + slack);
     if !inside {
         // Only a number with a unit can have a wrong one.
         let error = match given.dimension {

@@ -3,8 +3,8 @@
 use super::inverter::Inverter;
 use super::motor::Motor;
 use super::reader::Reader;
-use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue::{self, Part};
+use crate::diagnostics::{Collector, Diagnostic};
 use crate::spec::HallCapture;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -42,14 +42,19 @@ pub(super) fn check_period(
     Some(())
 }
 
+/// Most of the bus that EMF and resistive drop of a rating may take: beyond it a value is rather wrong.
+const MOST_OF_BUS: f64 = 1.25;
+
 /// Accepted: a bus that covers the line-to-line EMF at rated speed and what rated current drops in
-/// two phases. Refused: a rating that no steady state of this bus reaches. Commutations need more
-/// than that, so an accepted rating is not promised to be held.
+/// two phases; with a warning one that covers the EMF alone and leaves part of the current. Refused: a
+/// rating far beyond, of which a value is wrong. Commutations need more than that, so an accepted
+/// rating is not promised to be held.
 pub(super) fn check_bus(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
     errors: &mut Collector,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Option<()> {
     let (bus, speed, current, back_emf) = (
         inverter.v_bus.as_ref()?,
@@ -57,23 +62,40 @@ pub(super) fn check_bus(
         motor.rated_current.as_ref()?,
         &motor.emf.first()?.given,
     );
-    let line_to_line = motor.emf_constant? * motor.emf_shape?.line_to_line_peak();
+    let shape = motor.emf_shape?;
+    let line_to_line = motor.emf_constant? * shape.line_to_line_peak();
     let emf = line_to_line * speed.si;
-    let drop = 2.0 * motor.resistance? * current.si;
-    if emf + drop > bus.si * (1.0 + 1e-9) {
-        let remedy = if drop < bus.si {
-            catalogue::BusRemedy::Speed((bus.si - drop) / line_to_line)
-        } else {
-            catalogue::BusRemedy::Current(current.si * bus.si / drop)
-        };
-        let resistance = reader.part("resistance", String::new);
-        errors.push(catalogue::bus_too_low(
-            &bus.part,
-            [&speed.part, &current.part, &back_emf.part, &resistance],
-            [bus.si, emf, drop],
-            remedy,
-        ));
+    let resistance_of_two = 2.0 * motor.resistance?;
+    let drop = resistance_of_two * current.si;
+    if emf + drop <= bus.si * (1.0 + 1e-9) {
+        return Some(());
     }
+    let volts = [bus.si, emf, drop];
+    let reached = (bus.si - drop) / line_to_line;
+    let left = (bus.si - emf) / resistance_of_two;
+    if left > 0.0 && drop < bus.si / 2.0 && emf + drop < MOST_OF_BUS * bus.si {
+        let torque = left * motor.emf_constant? * shape.rated_factor();
+        let parts = [&speed.part, &current.part];
+        warnings.push(catalogue::rating_beyond_bus(
+            &bus.part,
+            parts,
+            volts,
+            [left, torque, reached],
+        ));
+        return Some(());
+    }
+    let remedy = if drop < bus.si {
+        catalogue::BusRemedy::Speed(reached)
+    } else {
+        catalogue::BusRemedy::Current(current.si * bus.si / drop)
+    };
+    let resistance = reader.part("resistance", String::new);
+    errors.push(catalogue::bus_too_low(
+        &bus.part,
+        [&speed.part, &current.part, &back_emf.part, &resistance],
+        volts,
+        remedy,
+    ));
     Some(())
 }
 
@@ -84,7 +106,8 @@ pub(super) fn slowest(
     capture: Option<HallCapture>,
 ) -> Option<f64> {
     let per_second = capture?.ticks_per_period() / inverter.t_s?;
-    Some(per_second * FRAC_PI_3 / (GREATEST_AGE * f64::from(motor.pole_pairs?)))
+    let sector = FRAC_PI_3 * motor.widest_sector();
+    Some(per_second * sector / (GREATEST_AGE * f64::from(motor.pole_pairs?)))
 }
 
 /// Minimum, rated and maximum speed in ascending order, within the Hall timer and the period.
@@ -125,7 +148,7 @@ pub(super) fn check_speeds(
         ));
     }
     let per_second = capture?.ticks_per_period() / t_s;
-    let ticks = per_second * FRAC_PI_3 / (minimum * pole_pairs);
+    let ticks = per_second * FRAC_PI_3 * motor.widest_sector() / (minimum * pole_pairs);
     if ticks > GREATEST_AGE * (1.0 + 1e-9) {
         let least = minimum * ticks / GREATEST_AGE;
         let clock = match capture? {

@@ -112,6 +112,8 @@ pub struct LoopOptions {
     pub speed: Option<SpeedLoop>,
     /// Greatest rate at which the current set-point takes effect, ampere per second; none: at once.
     pub slew_rate: Option<f64>,
+    /// Time for which the currents may not follow the voltages, periods; none: not watched.
+    pub residual_periods: Option<u32>,
 }
 
 /// The choice of controller.
@@ -155,6 +157,12 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .by_default("none: a set-point takes effect at once")
             .about("Greatest rate at which the current follows `set_current` and `set_torque`, A/s, A/ms, mA/s; at least `rated_current` in a minute; not with `speed_loop: on`"),
         |options| Some(number(options.slew_rate?)),
+    ),
+    Row::of(
+        rule::quantity("residual_timeout", &[D::Time], 1e-5, 1.0, "5 ms")
+            .by_default("none: the currents are not compared with the voltages")
+            .about("Time for which the currents may not follow the voltages as the motor's data say; then the drive trips: a dead current sensor, an open or exchanged phase, wrong motor data; 50 control periods to 65,535; only with `emf: observer`"),
+        |options| Some(number(options.residual_periods?)),
     ),
     Row::of(
         rule::plain("advance", 0.0, 2.0, "1.5")
@@ -282,6 +290,9 @@ pub(crate) struct Surroundings {
     pub rated_frequency: Option<f64>,
 }
 
+/// Least and greatest number of periods of `residual_timeout`.
+const RESIDUAL_PERIODS: [u32; 2] = [50, 65_535];
+
 /// Default commutation threshold, ampere; less for small motors.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
 
@@ -351,6 +362,8 @@ pub(crate) fn read_common(
     let commutation_timeout = read_timeout(reader, surroundings, errors);
     let speed = read_speed_loop(reader, surroundings, errors);
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
+    let emf_in_use = traits.uses_emf.then_some(emf);
+    let residual_periods = read_residual_timeout(reader, surroundings, emf_in_use, errors);
 
     if let Some(advance) = advanced
         && reference == Reference::Proportional
@@ -378,6 +391,7 @@ pub(crate) fn read_common(
         commutation_timeout: commutation_timeout?,
         speed,
         slew_rate,
+        residual_periods,
     })
 }
 
@@ -448,6 +462,53 @@ fn read_slew_rate(
         ));
     }
     Some(rate.si)
+}
+
+/// Periods for which the currents may not follow the voltages: enough for a torque step with a wrong
+/// inductance to pass.
+fn read_residual_timeout(
+    reader: &Reader,
+    drive: &Surroundings,
+    emf: Option<EmfSource>,
+    errors: &mut Collector,
+) -> Option<u32> {
+    const OPTION: &str = "residual_timeout";
+    let timeout = reader.plain_quantity(errors, OPTION)?;
+    if emf != Some(EmfSource::Observer) {
+        let other = emf.map_or_else(
+            || "a law that does not use the EMF".to_owned(),
+            |emf| format!("emf: {}", word(emf)),
+        );
+        errors.push(catalogue::option_without_effect(
+            &timeout.part.location,
+            OPTION,
+            &timeout.part.given,
+            reader
+                .field("emf")
+                .map_or(reader.location(), |field| &field.location),
+            &other,
+            "only `emf: observer` tells how far the currents are from those that the motor's data predict",
+        ));
+        return None;
+    }
+    let t_s = drive.t_s?;
+    let [least, most] = RESIDUAL_PERIODS;
+    // Decimal units may round a whole number of periods.
+    let periods = (timeout.si / t_s - 1e-6).ceil();
+    if !(f64::from(least)..=f64::from(most)).contains(&periods) {
+        errors.push(catalogue::out_of_limits(
+            &timeout.part.location,
+            OPTION,
+            &timeout.part.given,
+            &format!(
+                "{} ({least} control periods)",
+                engineering(at_least(f64::from(least) * t_s), "s")
+            ),
+            &engineering(at_most(f64::from(most) * t_s), "s"),
+        ));
+        return None;
+    }
+    Some(periods as u32)
 }
 
 /// The filter coefficient of the estimate; 1 without an estimate, where the option has no effect.

@@ -466,7 +466,7 @@ fn slips_are_told_at_the_most_likely_place() {
         ("181 gcm2", "181 gcm", Code::WrongDimension, "inertia"),
         ("4750 rpm", "4750", Code::MissingUnit, "rated_speed"),
         ("3.29 A", "3.29 mA", Code::OutOfRange, "rated_current"),
-        ("4750 rpm", "5600 rpm", Code::BusTooLow, "rated_speed"),
+        ("4750 rpm", "6000 rpm", Code::BusTooLow, "rated_speed"),
     ];
     for (old, new, code, field) in slips {
         assert!(EC_45.contains(old), "{old}");
@@ -484,4 +484,24 @@ fn slips_are_told_at_the_most_likely_place() {
         let place = format!("ec45.toml:{line}:");
         assert!(errors.to_string().starts_with(&place), "{new}: {errors}");
     }
+}
+
+#[test]
+fn a_rating_a_little_beyond_the_bus_is_a_warning_with_what_the_bus_allows() {
+    let text = newcomer(&EC_45.replacen("4750 rpm", "5300 rpm", 1), 24, 8);
+    let ast = parse_toml(&text, "ec45.toml").expect("is read");
+    let (_, origins) = check(&ast).expect("is accepted");
+    let told: Vec<String> = origins.warnings().iter().map(ToString::to_string).collect();
+    let [told] = told.as_slice() else {
+        panic!("{told:?}");
+    };
+    assert!(
+        told.contains("warning[HX0604]: `rated_speed`: 5300 rpm: there the bus of 24 V leaves "),
+        "{told}"
+    );
+    assert!(
+        told.contains("with the rated current it reaches "),
+        "{told}"
+    );
+    println!("{told}");
 }

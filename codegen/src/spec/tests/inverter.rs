@@ -429,3 +429,60 @@ fn a_slew_rate_is_the_rated_current_in_a_minute_at_least_and_not_beside_a_speed_
         "{told}"
     );
 }
+
+#[test]
+fn a_residual_timeout_is_whole_periods_from_50_up_and_needs_the_observer() {
+    let periods = |options: &str| {
+        let inverter = format!("{TIMER}adc_range = \"40 A\"");
+        let checked = try_check(&inverter, &format!("kind = \"pdcc\"\n{options}"));
+        checked.map(|(spec, _)| spec.controller.common().residual_periods)
+    };
+    let observer = "reference = \"proportional\"\nemf = \"observer\"\n";
+    assert_eq!(periods(observer), Ok(None));
+    let timeout = |time: &str| periods(&format!("{observer}residual_timeout = \"{time}\""));
+    assert_eq!(timeout("5.01 ms"), Ok(Some(101)));
+    let told = timeout("2 ms").expect_err("too short");
+    assert!(
+        told.contains("`residual_timeout`: 2 ms lies outside 2.5 ms (50 control periods) to "),
+        "{told}"
+    );
+    let told = periods("emf = \"model\"\nresidual_timeout = \"5 ms\"").expect_err("no observer");
+    assert!(
+        told.contains("`residual_timeout`: 5 ms has no effect with `emf = \"model\"`: only `emf = \"observer\"` tells"),
+        "{told}"
+    );
+}
+
+#[test]
+fn hall_angles_are_near_their_places_whatever_the_turn() {
+    let angles = |list: &str| {
+        let motor = MOTOR.replace(
+            "[inverter]\n",
+            &format!("hall_angles = [{list}]\n[inverter]\n"),
+        );
+        let text = format!("{motor}{TIMER}adc_range = \"40 A\"\n[controller]\nkind = \"pdcc\"\n");
+        parse_toml(&text, "m.toml")
+            .and_then(|ast| check(&ast))
+            .map(|(spec, _)| (spec.motor.hall_angles, spec.to_toml()))
+            .map_err(|told| told.to_string())
+    };
+    let quoted = |degrees: [f64; 6]| degrees.map(|x| format!("\"{x} deg\"")).join(", ");
+    let (found, text) = angles(&quoted([334.0, 31.5, 90.0, 150.0, 210.0, -90.0])).expect("right");
+    assert_eq!(found, [-26.0, 31.5, 90.0, 150.0, 210.0, 270.0]);
+    assert!(
+        text.contains("hall_angles = [-26.0, 31.5, 90.0, 150.0, 210.0, 270.0]"),
+        "{text}"
+    );
+    let (_, text) = angles(&quoted(crate::spec::HALL_ANGLES)).expect("right");
+    assert!(!text.contains("hall_angles"), "{text}");
+    let told = angles(&quoted([-30.0, 30.0, 90.0, 171.0, 210.0, 270.0])).expect_err("far");
+    assert!(
+        told.contains("that of sector 4 is 21 deg from its place, 150 deg"),
+        "{told}"
+    );
+    let told = angles("\"-30 deg\", \"30 deg\"").expect_err("two");
+    assert!(told.contains("2 angles instead of 6"), "{told}");
+    let told = angles("-30, 30, 90, 150, 210, 270").expect_err("no unit");
+    assert!(told.contains("hall_angles"), "{told}");
+    println!("{told}");
+}

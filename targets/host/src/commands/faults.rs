@@ -177,6 +177,7 @@ fn cause(cause: Cause) -> &'static str {
         Cause::Offset => "offset",
         Cause::OverVoltage => "over-voltage",
         Cause::UnderVoltage => "under-voltage",
+        Cause::Residual => "residual",
     }
 }
 
@@ -197,7 +198,7 @@ fn tone(row: &FaultRow, trip_current: f64) -> Tone {
 }
 
 /// What the counts mean for the board.
-const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, a stall. Against what shows in none of them the \
+const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, a stall and the currents. Against what shows in none of them the \
     board needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt and a \
     thermal limit.";
 
@@ -238,6 +239,12 @@ fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
     }
     if study.stall_timeout_s.is_none() {
         lines.push("Stall detection is off: `stall_timeout` in [inverter] turns it on.".to_owned());
+    }
+    if study.residual_timeout_s.is_none() {
+        lines.push(
+            "Currents that do not follow the voltages trip nothing: `residual_timeout` of the controller turns that on, with `emf: observer`."
+                .to_owned(),
+        );
     }
     lines.push(HARDWARE.to_owned());
     lines.join("\n")

@@ -19,6 +19,7 @@ fn the_study_is_one_json_object_whose_totals_are_those_of_its_rows() {
             "model",
             "motor",
             "points",
+            "residual_timeout_s",
             "rows",
             "stall_timeout_s",
             "totals",

@@ -33,6 +33,8 @@ pub enum Cause {
     OverVoltage,
     /// [`Fault::UnderVoltage`]
     UnderVoltage,
+    /// [`Fault::Residual`]
+    Residual,
 }
 
 impl Cause {
@@ -49,6 +51,7 @@ impl Cause {
             Fault::Offset => Self::Offset,
             Fault::OverVoltage => Self::OverVoltage,
             Fault::UnderVoltage => Self::UnderVoltage,
+            Fault::Residual => Self::Residual,
             other => unreachable!("unknown fault: {other:?}"),
         }
     }
@@ -64,6 +67,7 @@ impl fmt::Display for Cause {
             Self::Offset => "a current offset was too far from its nominal value",
             Self::OverVoltage => "the bus voltage was above `over_voltage`",
             Self::UnderVoltage => "the bus voltage was below `under_voltage`",
+            Self::Residual => "the currents did not follow the voltages for the `residual_timeout`",
         })
     }
 }

@@ -39,6 +39,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         }),
         hall_ticks_per_period: inverter.hall_capture.ticks_per_period(),
         hall_codes: motor.hall_codes,
+        hall_edges_deg: motor.hall_angles,
         hall_error_deg: [0.0; 3],
         mechanics: None,
         wiring: Wiring::default(),

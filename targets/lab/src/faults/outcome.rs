@@ -15,6 +15,9 @@ pub struct FaultStudy {
     pub max_current_a: f64,
     /// Time after which a rotor that stands trips, second; `None` without stall detection.
     pub stall_timeout_s: Option<f64>,
+    /// Time after which currents that do not follow the voltages trip, second; `None` where they are
+    /// not watched.
+    pub residual_timeout_s: Option<f64>,
     /// The operating points, each a run of every class.
     pub points: Vec<OperatingPoint>,
     /// One row per class.
@@ -119,6 +122,8 @@ impl FaultStudy {
             max_current_a: inverter.max_current,
             stall_timeout_s: (inverter.stall_periods > 0)
                 .then(|| f64::from(inverter.stall_periods) * inverter.t_s),
+            residual_timeout_s: (spec.controller.common().residual_periods)
+                .map(|periods| f64::from(periods) * inverter.t_s),
             totals: Totals::of(&rows, inverter.trip_current),
             points,
             rows,

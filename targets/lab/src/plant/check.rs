@@ -1,6 +1,7 @@
 //! The check of plant parameters.
 
 use super::adc::full_scale;
+use super::hall::EVEN_EDGES_DEG;
 use super::{AdcChannel, EmfShape, Mechanics, PlantError, PlantParams, Short, Wiring};
 use hexagen_codegen::diagnostics::engineering;
 
@@ -126,6 +127,11 @@ impl PlantParams {
     }
 
     fn check_halls(&self) -> Checked {
+        for (edge, place) in self.hall_edges_deg.into_iter().zip(EVEN_EDGES_DEG) {
+            let ok = (edge - place).abs() < 30.0;
+            let limit = format!("within 30 degrees of {place}");
+            require(ok, "hall_edges_deg", (edge, "deg"), &limit)?;
+        }
         for error in self.hall_error_deg {
             let (ok, value) = (error.abs() < 30.0, (error, "deg"));
             require(ok, "hall_error_deg", value, "within -30 to 30 degrees")?;

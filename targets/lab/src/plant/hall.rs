@@ -1,37 +1,68 @@
 //! Hall sensors: codes, placement errors, and exact times of their edges.
 
 use super::floor;
-use std::f64::consts::{PI, TAU};
-
-/// Angle of the rising edge of an ideally placed sensor Ha, Hb, Hc in radians.
-const RISE: [f64; 3] = [PI / 6.0, PI / 6.0 + TAU / 3.0, PI / 6.0 + 2.0 * TAU / 3.0];
+use std::f64::consts::TAU;
 
 /// Codes `HaHbHc` of sectors S1 to S6 from the ideal sensors.
 const IDEAL_CODES: [u8; 6] = super::STANDARD_HALL_CODES;
 
+/// Electrical angles of the edges at which sectors S1 to S6 begin, of sensors in their places: degrees.
+pub(super) const EVEN_EDGES_DEG: [f64; 6] = [-30.0, 30.0, 90.0, 150.0, 210.0, 270.0];
+
+/// A sensor: it reads 1 from its rising edge on, for the angle `high`. Radians.
+#[derive(Clone, Copy, Debug)]
+struct Sensor {
+    rise: f64,
+    high: f64,
+}
+
+impl Sensor {
+    /// Edges passed from the first rising one, even while the sensor reads 1.
+    fn passed(self, theta_e: f64) -> f64 {
+        let turns = floor((theta_e - self.rise) / TAU);
+        let is_high = theta_e - self.rise - turns * TAU < self.high;
+        2.0 * turns + if is_high { 0.0 } else { 1.0 }
+    }
+
+    /// Angle of the edge behind which `passed` are passed.
+    fn edge(self, passed: f64) -> f64 {
+        let turns = floor(passed / 2.0);
+        let into = if passed > 2.0 * turns { self.high } else { 0.0 };
+        self.rise + turns * TAU + into
+    }
+}
+
 /// The three sensors and the time of the last edge.
 #[derive(Clone, Debug)]
 pub(super) struct Sensors {
-    rise: [f64; 3],
+    sensors: [Sensor; 3],
     codes: [u8; 6],
     last_edge: f64,
 }
 
 impl Sensors {
-    pub(super) fn new(error_deg: [f64; 3], codes: [u8; 6]) -> Self {
-        let rise = std::array::from_fn(|x| RISE[x] + error_deg[x].to_radians());
+    /// Sensors with edges at these angles, which each is displaced from.
+    pub(super) fn new(edges_deg: [f64; 6], error_deg: [f64; 3], codes: [u8; 6]) -> Self {
+        let sensors = std::array::from_fn(|x| {
+            // Ha rises where S2 begins, and falls three edges on.
+            let [rise, fall] = [1 + 2 * x, (4 + 2 * x) % 6].map(|edge| edges_deg[edge]);
+            Sensor {
+                rise: (rise + error_deg[x]).to_radians(),
+                high: (fall - rise).rem_euclid(360.0).to_radians(),
+            }
+        });
         Self {
-            rise,
+            sensors,
             codes,
             last_edge: f64::NEG_INFINITY,
         }
     }
 
     /// The same sensors in other places; the last edge is kept.
-    pub(super) fn change(&mut self, error_deg: [f64; 3], codes: [u8; 6]) {
+    pub(super) fn change(&mut self, edges_deg: [f64; 6], error_deg: [f64; 3], codes: [u8; 6]) {
         *self = Self {
             last_edge: self.last_edge,
-            ..Self::new(error_deg, codes)
+            ..Self::new(edges_deg, error_deg, codes)
         };
     }
 
@@ -40,9 +71,9 @@ impl Sensors {
         self.last_edge
     }
 
-    /// Half-turns from each sensor's rising edge, rounded down; even while the sensor reads 1.
+    /// Edges of each sensor passed.
     fn half_turns(&self, theta_e: f64) -> [f64; 3] {
-        self.rise.map(|rise| floor((theta_e - rise) / PI))
+        self.sensors.map(|sensor| sensor.passed(theta_e))
     }
 
     /// Hall code at an electrical angle, in the motor's wiring. A sensor combination that ideal
@@ -62,7 +93,7 @@ impl Sensors {
         let (before, after) = (self.half_turns(from), self.half_turns(to));
         for x in 0..3 {
             if before[x] != after[x] {
-                let edge = self.rise[x] + before[x].max(after[x]) * PI;
+                let edge = self.sensors[x].edge(before[x].max(after[x]));
                 self.last_edge = self.last_edge.max(t + h * (edge - from) / (to - from));
             }
         }
@@ -76,7 +107,7 @@ mod tests {
 
     #[test]
     fn ideal_codes_match_the_sector() {
-        let sensors = Sensors::new([0.0; 3], IDEAL_CODES);
+        let sensors = Sensors::new(EVEN_EDGES_DEG, [0.0; 3], IDEAL_CODES);
         for step in 0..720 {
             let theta = (f64::from(step) * 0.5 + 0.25).to_radians();
             assert_eq!(
@@ -89,7 +120,7 @@ mod tests {
 
     #[test]
     fn edges_are_found_in_both_directions_and_displaced_by_the_placement() {
-        let mut sensors = Sensors::new([5.0, 0.0, 0.0], IDEAL_CODES);
+        let mut sensors = Sensors::new(EVEN_EDGES_DEG, [5.0, 0.0, 0.0], IDEAL_CODES);
         let degrees = f64::to_radians;
         sensors.sweep(degrees(30.0), degrees(34.0), 0.0, 1.0);
         assert_eq!(sensors.last_edge(), f64::NEG_INFINITY);

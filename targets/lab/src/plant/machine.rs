@@ -124,7 +124,11 @@ impl Plant {
         Ok(Self {
             network: Network::new(&params),
             gates: Gates::new(params.dead_time, params.wiring),
-            sensors: Sensors::new(params.hall_error_deg, params.hall_codes),
+            sensors: Sensors::new(
+                params.hall_edges_deg,
+                params.hall_error_deg,
+                params.hall_codes,
+            ),
             segment: Segment::default(),
             period: 0,
             theta_e: wrap(theta_e),
@@ -155,8 +159,11 @@ impl Plant {
         params.check()?;
         self.network = Network::new(&params);
         self.gates.change(params.dead_time, params.wiring);
-        self.sensors
-            .change(params.hall_error_deg, params.hall_codes);
+        self.sensors.change(
+            params.hall_edges_deg,
+            params.hall_error_deg,
+            params.hall_codes,
+        );
         self.currents = self.network.without_open(self.currents);
         self.params = params;
         Ok(())

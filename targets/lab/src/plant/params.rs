@@ -1,6 +1,7 @@
 //! Parameters of the plant in SI units, and their check.
 
 use super::Short;
+use super::hall::EVEN_EDGES_DEG;
 use hexagen_codegen::diagnostics::engineering;
 use serde::{Deserialize, Serialize};
 
@@ -146,6 +147,9 @@ pub struct PlantParams {
     pub hall_ticks_per_period: f64,
     /// Hall code shown in sectors S1 to S6.
     pub hall_codes: [u8; 6],
+    /// Electrical angles of the edges at which sectors S1 to S6 begin, forward, in degrees.
+    #[serde(default = "even_edges")]
+    pub hall_edges_deg: [f64; 6],
     /// Placement error of the sensors Ha, Hb, Hc in electrical degrees; positive edges come late
     /// in forward rotation.
     pub hall_error_deg: [f64; 3],
@@ -176,6 +180,11 @@ pub enum PlantError {
 /// PWM periods in a control period that no file tells.
 fn one() -> u16 {
     1
+}
+
+/// Hall edges that no file tells.
+fn even_edges() -> [f64; 6] {
+    EVEN_EDGES_DEG
 }
 
 /// The phases of current channels that no file names.
@@ -212,6 +221,7 @@ impl PlantParams {
             low_side: None,
             hall_ticks_per_period: 1800.0,
             hall_codes: STANDARD_HALL_CODES,
+            hall_edges_deg: EVEN_EDGES_DEG,
             hall_error_deg: [0.0; 3],
             mechanics: None,
             wiring: Wiring::default(),

@@ -14,6 +14,7 @@ mod limit;
 mod motion;
 mod parts;
 mod physical;
+mod residual;
 mod rotor;
 mod slew;
 mod speed;
@@ -34,6 +35,7 @@ use fade::Fade;
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
 use parts::Part;
+use residual::ResidualWatch;
 use slew::Slew;
 use speed::Regulator;
 use state::State;
@@ -50,6 +52,7 @@ pub struct BitTrue<W: Word = f64> {
     speed: Option<Regulator<W>>,
     slew: Option<Slew>,
     fade: Option<Fade<W>>,
+    residual: Option<ResidualWatch<W>>,
     /// Volt per ampere of the set-point.
     gain: f64,
     // Set-point words.
@@ -122,6 +125,7 @@ impl<W: Word> BitTrue<W> {
             speed,
             slew: Slew::new(spec, &scale, &k)?,
             fade: Fade::new(spec, &scale)?,
+            residual: ResidualWatch::new(spec, &scale)?,
             v_bus: word(k.v_bus_nominal),
             gain: reference_gain(spec),
             ratio: word(pow2(k.ratio_bits as i32)),
@@ -295,6 +299,11 @@ impl<W: Word> BitTrue<W> {
         if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
             self.state.supervisor.trip(fault);
         }
+        if let Some(watch) = &self.residual
+            && watch.is_over(self.state.residual_count)
+        {
+            self.state.supervisor.trip(Fault::Residual);
+        }
         let k = &self.k;
         // 1 measure
         let limits = &self.limits;
@@ -392,6 +401,7 @@ impl<W: Word> BitTrue<W> {
 
         // 8 EMF
         let mut emf_error = self.state.emf_error;
+        let mut residual_count = self.state.residual_count;
         let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => ([word(0.0); 2], [word(0.0); 2]),
             Some(EmfSource::Estimated) => {
@@ -425,6 +435,10 @@ impl<W: Word> BitTrue<W> {
                     (mean(start, end), mean(now, start))
                 } else {
                     emf_error = emf::corrected_error(k, &self.state, i, shape);
+                    if let Some(watch) = &self.residual {
+                        let demand = (j, angle.step);
+                        residual_count = watch.count(k, &self.state, i, emf_error, demand);
+                    }
                     let e = emf::corrected(k, mean(start, end), emf_error, shape);
                     (e, if delayed { self.state.e_next } else { e })
                 }
@@ -492,6 +506,7 @@ impl<W: Word> BitTrue<W> {
             self.state.e_prev = expected;
             self.state.e_next = e;
             self.state.emf_error = emf_error;
+            self.state.residual_count = residual_count;
             self.state.speed_integral = speed_integral;
             self.state.j_in_force = j_in_force;
             self.state.integral = decision.integral;

@@ -13,7 +13,7 @@ use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop};
 use super::trace::{Past, PhysicalState, Trace};
-use super::variant::{Variant, emf_error_limit};
+use super::variant::{Variant, allowed_residual, emf_error_limit};
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
@@ -25,9 +25,6 @@ use nalgebra::{Vector2, Vector3};
 use speed::SpeedLoop;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
 use vector::{clarke, from_ab, phases, to_ab};
-
-/// A sector is half open: its last angle is this far (radians) before the next one.
-const SECTOR_END: f64 = FRAC_PI_3 * (1.0 - 1e-9);
 
 /// Exact leg commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +65,8 @@ pub struct Ideal {
     phase: DiscretePhase,
     shape: EmfShape,
     hall_sectors: [usize; 8],
+    /// Of each sector, where it begins beyond its place, and its width, radian.
+    sectors: [[f64; 2]; 6],
     bus_watch: Option<BusWatch>,
     clock: HallClock,
     limits: Limits,
@@ -87,6 +86,9 @@ pub struct Ideal {
     k_phase: f64,
     pp_t_s: f64,
     speed_loop: Option<SpeedLoop>,
+    /// Residual allowed always, per ampere, per electrical radian per second, and without an angle, volt.
+    allowed_residual: [f64; 4],
+    t_s: f64,
     /// Greatest change of the set-point in a period, ampere; 0 for any.
     slew_step: f64,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
@@ -122,6 +124,7 @@ impl Ideal {
             phase,
             shape: EmfShape::new(motor)?,
             hall_sectors: sector::hall_sectors(motor),
+            sectors: motor.sectors_beyond_places(),
             bus_watch: BusWatch::new(inverter),
             clock: HallClock::new(spec),
             limits,
@@ -140,6 +143,8 @@ impl Ideal {
             k_phase: motor.emf_constant,
             pp_t_s: pole_pairs * inverter.t_s,
             speed_loop: SpeedLoop::new(spec),
+            allowed_residual: allowed_residual(spec),
+            t_s: inverter.t_s,
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
             fades: [inverter.braking_fade, inverter.motoring_fade],
             current: if spec.loop_options().has_speed_loop() {
@@ -254,6 +259,10 @@ impl Ideal {
         if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
             self.state.supervisor.trip(fault);
         }
+        let most = f64::from(self.variant.options.residual_periods);
+        if most > 0.0 && self.state.residual_count >= most {
+            self.state.supervisor.trip(Fault::Residual);
+        }
         // 1 measure
         let limits = &self.limits;
         let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);
@@ -344,6 +353,7 @@ impl Ideal {
         // 8 EMF
         let delayed = self.variant.delayed();
         let mut emf_error = self.state.emf_error;
+        let mut residual_count = self.state.residual_count;
         let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
@@ -375,6 +385,8 @@ impl Ideal {
                     (e, mean(theta, start))
                 } else {
                     emf_error = self.corrected_error([i_a, i_b], &shape);
+                    residual_count =
+                        self.counted_residual([i_a, i_b], emf_error, [current, step_angle]);
                     let e = self.corrected_emf(&e, emf_error, &shape);
                     let [next_a, next_b] = self.state.e_next;
                     (e, if delayed { from_ab(next_a, next_b) } else { e })
@@ -446,6 +458,7 @@ impl Ideal {
             self.state.e_prev = to_ab(&expected);
             self.state.e_next = to_ab(&e);
             self.state.emf_error = emf_error;
+            self.state.residual_count = residual_count;
             self.state.speed_integral = speed_integral;
             self.state.current_in_force = current_in_force;
             self.state.integral = decision.integral;
@@ -461,6 +474,7 @@ impl Ideal {
             self.state.e_prev = [0.0; 2];
             self.state.e_next = [0.0; 2];
             self.state.emf_error = [0.0; 2];
+            self.state.residual_count = 0.0;
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
             self.state.current_in_force = 0.0;
@@ -514,15 +528,22 @@ impl Ideal {
     fn angle(&self, sector: usize) -> (f64, f64, usize) {
         let timing = &self.state.timing;
         let omega = self.electrical_speed();
-        let progress = (omega * timing.age_prev).min(SECTOR_END);
+        // Where the sector begins beyond its place, and where it ends, from where it begins.
+        let [beyond, width] = match sector {
+            0 => [0.0, FRAC_PI_3],
+            _ => self.sectors[sector - 1],
+        };
+        let end = width * (1.0 - 1e-9);
+        let progress = (omega * timing.age_prev).min(end);
         let step_angle = timing.direction * (omega * self.clock.period).min(FRAC_PI_6);
         let in_sector = if timing.edges != 2 {
-            FRAC_PI_6
+            width / 2.0
         } else if timing.direction > 0.0 {
             progress
         } else {
-            SECTOR_END - progress
+            end - progress
         };
+        let in_sector = beyond + in_sector;
         let theta = sector as f64 * FRAC_PI_3 - FRAC_PI_3 - FRAC_PI_6 + in_sector;
         let sector_eff = if timing.edges == 2 && sector != 0 {
             let ahead = ((in_sector + self.variant.options.advance * step_angle) / FRAC_PI_3)

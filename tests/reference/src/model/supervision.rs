@@ -64,6 +64,7 @@ pub fn fault_from_word(word: i32) -> Option<Fault> {
         5 => Fault::Offset,
         6 => Fault::OverVoltage,
         7 => Fault::UnderVoltage,
+        8 => Fault::Residual,
         _ => return None,
     })
 }
@@ -80,6 +81,7 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
         Some(Fault::Offset) => 5,
         Some(Fault::OverVoltage) => 6,
         Some(Fault::UnderVoltage) => 7,
+        Some(Fault::Residual) => 8,
         Some(other) => unreachable!("unknown fault: {other:?}"),
     }
 }

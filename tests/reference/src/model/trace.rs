@@ -86,6 +86,8 @@ pub struct PhysicalState {
     pub e_next: [f64; 2],
     /// Error of the modelled EMF: q along the proportional current, d across it over sqrt(3), volt.
     pub emf_error: [f64; 2],
+    /// Periods in which the currents did not follow the voltages, less those in which they did.
+    pub residual_count: f64,
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
     /// Whether the components along a and across it are to rise (PHCC); `None` before the first

@@ -202,3 +202,23 @@ pub fn emf_error_limit(spec: &Spec) -> Result<f64, Error> {
     let count = inverter.v_bus / f64::from(inverter.timer_period);
     Ok((inverter.v_bus_max()? / count / 2.0).log2().ceil().exp2())
 }
+
+/// Residual allowed by the residual watch: volt always, volt per ampere of the set-point, volt per
+/// electrical radian per second, and in its place volt while the angle is unknown.
+pub fn allowed_residual(spec: &Spec) -> [f64; 4] {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let flux = motor.emf_constant / f64::from(motor.pole_pairs);
+    let dead_time = inverter.v_bus * 1.5e-6 / inverter.pwm_period();
+    let waits = f64::from(inverter.start_periods) * inverter.t_s;
+    let fastest = if waits > 0.0 {
+        std::f64::consts::TAU / 3.0 / waits
+    } else {
+        f64::from(motor.pole_pairs) * inverter.omega_max
+    };
+    [
+        4.0 / 3.0 * dead_time,
+        1.6 * motor.resistance,
+        0.5 * flux + 0.7 * motor.inductance * inverter.max_current,
+        1.5 * flux * fastest,
+    ]
+}

@@ -41,6 +41,8 @@ pub struct LoopOptions {
     pub inertia: f64,
     /// Greatest rate of the current set-point in force, A/s; 0 without one.
     pub slew_rate: f64,
+    /// Periods for which the currents may not follow the voltages; 0 where that is not watched.
+    pub residual_periods: u32,
 }
 
 impl LoopOptions {
@@ -89,6 +91,9 @@ macro_rules! options {
             /// Greatest rate of the current set-point in force, A/s; 0 without one.
             #[serde(default)]
             pub slew_rate: f64,
+            /// Periods for which the currents may not follow the voltages; 0 where that is not watched.
+            #[serde(default, rename = "residual_timeout")]
+            pub residual_periods: u32,
             $($(#[$doc])* pub $field: $kind,)*
         }
 
@@ -105,6 +110,7 @@ macro_rules! options {
                     speed_bandwidth: self.speed_bandwidth,
                     inertia: self.inertia,
                     slew_rate: self.slew_rate,
+                    residual_periods: self.residual_periods,
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Coefficients and constants, rounded from the specification (section "Words").
 
 use super::parts::{Part, Parts};
+use super::rotor::Sectors;
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
@@ -47,6 +48,7 @@ pub struct Constants<W> {
     pub line_max: f64,
     /// E_ERROR_MAX.
     pub emf_error_limit: f64,
+    pub sectors: Sectors,
     /// Shift of the sums of products that correct the EMF error.
     pub observer: Shift,
     /// 2^q, where q is not below 0.
@@ -289,6 +291,7 @@ impl<W: Word> Constants<W> {
                 (Part::EmfMemory, filtered || variant.observes()),
                 (Part::EmfNext, variant.observes() && variant.delayed()),
                 (Part::EmfError, variant.observes()),
+                (Part::Residual, variant.options.residual_periods > 0),
                 (Part::Integral, variant.six_step == Some(Switch::Off)),
                 (Part::PairIntegral, variant.six_step == Some(Switch::On)),
                 (
@@ -318,6 +321,7 @@ impl<W: Word> Constants<W> {
             v_largest,
             line_max,
             emf_error_limit: emf_error_limit(spec)? * two_v,
+            sectors: Sectors::new(motor.hall_angles),
             observer: Shift::new(shape_product.bits() + 4),
             line_scale: pow2(q.max(0)),
             line_shift: (-q).max(0) as u32,

@@ -29,6 +29,16 @@ pub fn estimate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2
     })
 }
 
+/// Observed EMF of phases a, b less the expected one.
+#[inline]
+pub fn residual<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
+    let seen = seen(k, state, i);
+    both(|x| {
+        let most = k.emf_error_limit;
+        within(seen[x] - state.e_prev[x], -most, most - 1.0)
+    })
+}
+
 /// Error of the modelled EMF, q and d, corrected by the period that ends with the currents `i`.
 #[inline]
 pub fn corrected_error<W: Word>(
@@ -40,9 +50,8 @@ pub fn corrected_error<W: Word>(
     if state.timing.edges != 2 {
         return state.emf_error;
     }
-    let seen = seen(k, state, i);
     let believed = |volts: W| within(volts, -k.emf_error_limit, k.emf_error_limit - 1.0);
-    let [x, y] = both(|phase| believed(seen[phase] - state.e_prev[phase]));
+    let [x, y] = residual(k, state, i);
     let ([a, b], [line_a, line_b]) = (shape, lines(shape));
     let along = k.observer.floor_sum_of_products([x, line_a], [y, line_b]);
     let across = k.observer.floor_sum_of_products([y, a], [-x, b]);

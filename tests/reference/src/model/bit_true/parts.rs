@@ -17,6 +17,7 @@ pub enum Part {
     EmfMemory,
     EmfNext,
     EmfError,
+    Residual,
     Integral,
     PairIntegral,
     Hysteresis,

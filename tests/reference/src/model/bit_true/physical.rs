@@ -91,6 +91,7 @@ impl State<f64> {
             e_prev: volts(self.e_prev),
             e_next: volts(self.e_next),
             emf_error: volts(self.emf_error),
+            residual_count: self.residual_count,
             integral: volts(self.integral),
             rises: self
                 .hysteresis

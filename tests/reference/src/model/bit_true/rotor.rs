@@ -5,6 +5,7 @@ use super::state::State;
 use crate::exact::{Word, floor, greater, lesser, pow2, to_index, word, wrap32};
 use crate::model::hall::HallClock;
 use crate::model::sector::HallEvent;
+use crate::spec::EVEN_EDGES;
 
 /// SIXTH: 60 degrees as an angle word, floor(2^32/6).
 const SIXTH: f64 = 715_827_882.0;
@@ -12,16 +13,44 @@ const SIXTH: f64 = 715_827_882.0;
 const HALF_SIXTH: f64 = 357_913_941.0;
 /// 30 degrees as an angle word, rounded up.
 const TWELFTH: f64 = 357_913_942.0;
-/// Angle words at which sectors 1 to 6 begin (entry 0 is "no sector").
-const SECTOR_START: [f64; 7] = [
-    0.0,
-    3_937_053_355.0,
-    357_913_942.0,
-    1_073_741_824.0,
-    1_789_569_707.0,
-    2_505_397_590.0,
-    3_221_225_472.0,
-];
+/// The sectors as angle words; entry 0 is "no sector".
+#[derive(Clone, Copy, Debug)]
+pub struct Sectors {
+    /// Where each begins.
+    start: [f64; 7],
+    /// Its last word, from its first.
+    last: [f64; 7],
+    /// Half of it.
+    half: [f64; 7],
+}
+
+impl Sectors {
+    /// `degrees`: the angles at which sectors 1 to 6 begin, where sensors are out of place.
+    pub fn new(degrees: Option<[f64; 6]>) -> Self {
+        let mut sectors = Self {
+            start: [0.0; 7],
+            last: [SIXTH - 1.0; 7],
+            half: [HALF_SIXTH; 7],
+        };
+        let turn = pow2(32);
+        // Near a whole word, that word.
+        let word_of = |degrees: f64| (degrees / 360.0 * turn - 1e-4).ceil().rem_euclid(turn);
+        let begins = degrees.unwrap_or(EVEN_EDGES).map(word_of);
+        for (k, begin) in begins.iter().enumerate() {
+            sectors.start[k + 1] = *begin;
+            if degrees.is_some() {
+                let width = (begins[(k + 1) % 6] - begin).rem_euclid(turn);
+                sectors.last[k + 1] = width - 1.0;
+                sectors.half[k + 1] = ((width - 1.0) / 2.0).floor();
+            }
+        }
+        if degrees.is_some() {
+            sectors.last[0] = 0.0;
+            sectors.half[0] = 0.0;
+        }
+        sectors
+    }
+}
 
 /// The rotor at this sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,7 +82,8 @@ pub fn angle<W: Word>(
     } else {
         state.omega
     };
-    let progress = lesser(omega * timing.age_prev, SIXTH - 1.0);
+    let (start, last) = (k.sectors.start[event.sector], k.sectors.last[event.sector]);
+    let progress = lesser(omega * timing.age_prev, last);
     let turn = match k.k_ticks {
         None => omega * clock.ticks,
         Some(k_ticks) => k_ticks.mul(omega),
@@ -61,13 +91,13 @@ pub fn angle<W: Word>(
     let turn = lesser(turn, HALF_SIXTH);
     let step = timing.direction * turn;
     let in_sector = if !turning {
-        word(HALF_SIXTH)
+        word(k.sectors.half[event.sector])
     } else if timing.direction > 0.0 {
         progress
     } else {
-        -progress + (SIXTH - 1.0)
+        -progress + last
     };
-    let theta = wrap32(in_sector + SECTOR_START[event.sector]);
+    let theta = wrap32(in_sector + start);
     let sector_eff = if k.advanced && turning {
         let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
         to_index(floor(ahead * 6.0 * pow2(-32))) + 1
@@ -88,7 +118,8 @@ mod tests {
 
     #[test]
     fn sectors_start_at_the_first_word_after_their_edge() {
-        for (sector, start) in SECTOR_START.iter().enumerate().skip(1) {
+        let sectors = Sectors::new(None);
+        for (sector, start) in sectors.start.iter().enumerate().skip(1) {
             let degrees = (60 * (sector as i128 - 1) - 30).rem_euclid(360);
             assert_eq!(*start as i128, ((degrees << 32) + 359) / 360);
             let index = |theta: f64| floor(wrap32(theta + TWELFTH) * 6.0 * pow2(-32)) as usize;

@@ -31,6 +31,7 @@ pub struct State<W: Word> {
     pub e_next: [W; 2],
     /// `e_error_q`, `e_error_d`.
     pub emf_error: [W; 2],
+    pub residual_count: W,
     pub integral: [W; 2],
     /// `h_a`, `h_b`; unless stored in the contributions of past periods.
     pub hysteresis: [W; 2],
@@ -221,6 +222,9 @@ macro_rules! for_each_word {
             $show!("e_error_q", $state.emf_error[0]);
             $show!("e_error_d", $state.emf_error[1]);
         }
+        if $parts.has(Part::Residual) {
+            $show!("residual_count", $state.residual_count);
+        }
         if $parts.has(Part::Integral) {
             $show!("integral_a", $state.integral[0]);
             $show!("integral_b", $state.integral[1]);
@@ -288,6 +292,7 @@ impl<W: Word> State<W> {
         self.e_prev = [word(0.0); 2];
         self.e_next = [word(0.0); 2];
         self.emf_error = [word(0.0); 2];
+        self.residual_count = word(0.0);
         self.integral = [word(0.0); 2];
         self.hysteresis = [word(0.0); 2];
         self.vector_prev = Vector(0);

@@ -88,13 +88,41 @@ impl Ideal {
             return self.state.emf_error;
         }
         let believed = |volts: f64| volts.clamp(-self.emf_error_limit, self.emf_error_limit);
-        let [e_a, e_b] = self.state.e_prev;
-        let [x, y] = to_ab(&(self.emf_seen(i) - from_ab(e_a, e_b))).map(believed);
+        let [x, y] = self.residual(i);
         let residual = from_ab(x, y) * OBSERVER_GAIN;
         [
             believed(self.state.emf_error[0] + residual.dot(shape)),
             believed(self.state.emf_error[1] + shape.perp(&residual) / 3_f64.sqrt()),
         ]
+    }
+
+    /// Observed EMF of phases a, b less the expected one.
+    fn residual(&self, i: [f64; 2]) -> [f64; 2] {
+        let [e_a, e_b] = self.state.e_prev;
+        let most = self.emf_error_limit;
+        to_ab(&(self.emf_seen(i) - from_ab(e_a, e_b))).map(|volts| volts.clamp(-most, most))
+    }
+
+    /// Count of the residual watch after the period that ends with the currents `i`; `emf_error` is
+    /// that after it.
+    pub(super) fn counted_residual(
+        &self,
+        i: [f64; 2],
+        [q, d]: [f64; 2],
+        [current, step_angle]: [f64; 2],
+    ) -> f64 {
+        let [a, b] = self.residual(i).map(f64::abs);
+        let [least, per_ampere, per_speed, unseen] = self.allowed_residual;
+        let learnt = q.abs().max(2.0 * d.abs());
+        let (seen, by_speed) = if self.state.timing.edges == 2 {
+            (learnt, per_speed * step_angle.abs() / self.t_s)
+        } else {
+            (a.max(b) - learnt, unseen)
+        };
+        let allowed = least + per_ampere * current.abs() + by_speed;
+        let step = if seen > allowed { 1.0 } else { -1.0 };
+        let most = f64::from(self.variant.options.residual_periods);
+        (self.state.residual_count + step).clamp(0.0, most)
     }
 
     /// The modelled EMF plus its error.
