@@ -131,17 +131,17 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             engineering(inverter.trip_current, "A")
         ),
     ];
+    if let Some(periods) = spec.controller.common().residual_periods {
+        lines.push(format!(
+            "So do {periods} periods more with currents that do not follow the voltages than with ones that do."
+        ));
+    }
     lines.push(match inverter.stall_periods {
         0 => "A stalled rotor does not (`stall_timeout` is off).".to_owned(),
         periods => {
             format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
         }
     });
-    if let Some(periods) = spec.controller.common().residual_periods {
-        lines.push(format!(
-            "So do {periods} periods more with currents that do not follow the voltages than with ones that do."
-        ));
-    }
     if inverter.hall_glitches > 0 {
         lines.push(format!(
             "A disturbed Hall code is bridged for {} samples in a row, and trips it then.",

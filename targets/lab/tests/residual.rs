@@ -34,36 +34,35 @@ fn trips(study: &FaultStudy, words: &str) -> [usize; 2] {
 
 #[test]
 fn dead_sensors_open_phases_and_exchanged_wires_are_noticed() {
-    for law in LAWS {
-        let watched = studied("trivedi-keshri-660w", law);
-        assert_eq!(watched.residual_timeout_s, Some(5e-3));
-        let plain = studied("trivedi-keshri-660w", law.split(':').next().expect("a law"));
-        assert_eq!(plain.residual_timeout_s, None);
-        // Words, and the least part of the runs that is noticed with the watch.
-        for (words, least) in [
-            ("stuck at 0 A", 0.75),
-            ("stuck at its last value", 0.75),
-            ("open", 0.7),
-            ("switch stays off", 0.6),
-            ("wires of phases a and b exchanged", 0.5),
-            ("Hall sensors Ha and Hb exchanged", 0.5),
-        ] {
-            let [before, _] = trips(&plain, words);
-            let [tripped, runs] = trips(&watched, words);
-            let share = tripped as f64 / runs as f64;
-            assert!(
-                share >= least && tripped > before,
-                "{law}, {words}: {tripped} of {runs} runs, {before} without the watch"
-            );
-        }
-        let noticed = |study: &FaultStudy| study.totals.always + study.totals.sometimes;
-        assert!(noticed(&watched) >= noticed(&plain) + 10, "{law}");
+    let law = LAWS[0];
+    let watched = studied("trivedi-keshri-660w", law);
+    assert_eq!(watched.residual_timeout_s, Some(5e-3));
+    let plain = studied("trivedi-keshri-660w", law.split(':').next().expect("a law"));
+    assert_eq!(plain.residual_timeout_s, None);
+    // Words, and the least part of the runs that is noticed with the watch.
+    for (words, least) in [
+        ("stuck at 0 A", 0.75),
+        ("stuck at its last value", 0.75),
+        ("open", 0.7),
+        ("switch stays off", 0.6),
+        ("wires of phases a and b exchanged", 0.5),
+        ("Hall sensors Ha and Hb exchanged", 0.5),
+    ] {
+        let [before, _] = trips(&plain, words);
+        let [tripped, runs] = trips(&watched, words);
+        let share = tripped as f64 / runs as f64;
+        assert!(
+            share >= least && tripped > before,
+            "{law}, {words}: {tripped} of {runs} runs, {before} without the watch"
+        );
     }
+    let noticed = |study: &FaultStudy| study.totals.always + study.totals.sometimes;
+    assert!(noticed(&watched) >= noticed(&plain) + 10, "{law}");
 }
 
 #[test]
 fn sound_drives_do_not_trip() {
-    for motor in ["hurst-long", "teknic-m2310p", "velineon-3500"] {
+    for motor in ["hurst-long", "velineon-3500"] {
         let study = studied(motor, LAWS[0]);
         for row in study.of_part(Part::Sound) {
             assert_eq!(row.tripped, 0, "{motor}: {row:?}");
@@ -113,8 +112,9 @@ const DEVIATIONS: [Deviation; 9] = [
 #[test]
 fn steps_and_reversals_of_the_torque_trip_no_deviating_drive() {
     let motors = library();
-    motors.par_iter().for_each(|motor| {
-        for (law, share) in LAWS.into_iter().flat_map(|law| [(law, 0.1), (law, 0.6)]) {
+    motors.par_iter().enumerate().for_each(|(number, motor)| {
+        // Both laws take turns.
+        for (law, share) in [(LAWS[number % 2], 0.1), (LAWS[(number + 1) % 2], 0.6)] {
             let drive = drive(motor.name, law);
             let spec = &drive.spec;
             let omega = share * spec.motor.rated_speed;
@@ -146,38 +146,37 @@ fn steps_and_reversals_of_the_torque_trip_no_deviating_drive() {
 #[test]
 fn a_free_shaft_starts_and_reverses_without_a_trip() {
     let motors = library();
-    motors.par_iter().for_each(|motor| {
-        for law in LAWS {
-            let drive = drive(motor.name, law);
-            let spec = &drive.spec;
-            let rated = spec.motor.rated_current;
-            // From standstill to the rated speed in a quarter of a second.
-            let torque = rated * spec.torque_constant();
-            let inertia = torque * 0.25 / spec.motor.rated_speed;
-            for (what, deviate) in DEVIATIONS {
-                let mut plant = plant_of(spec);
-                deviate(&mut plant);
-                plant.mechanics = Some(Mechanics {
-                    inertia,
-                    opposing_torque: 0.0,
-                    external_torque: 0.0,
-                    viscous: 0.0,
-                });
-                let plant = Plant::new(plant, 0.2, 0.0).expect("a plant");
-                let engine = drive.engine(Model::Fixed, drive.set_point(rated));
-                let delay = run_of(spec, 0.0, 0.0).delay;
-                let mut closed = ClosedLoop::new(plant, engine, delay);
-                for goal in [1.0, -1.0] {
-                    closed.controller().set_current(goal * rated);
-                    closed.run((0.22 / spec.inverter.t_s) as usize, &mut ());
-                    let fault = closed.controller().fault();
-                    assert_ne!(
-                        fault,
-                        Some(Fault::Residual),
-                        "{}, {law}, {what}: set-point {goal}",
-                        motor.name
-                    );
-                }
+    motors.par_iter().enumerate().for_each(|(number, motor)| {
+        let law = LAWS[number % 2];
+        let drive = drive(motor.name, law);
+        let spec = &drive.spec;
+        let rated = spec.motor.rated_current;
+        // From standstill to the rated speed in a quarter of a second.
+        let torque = rated * spec.torque_constant();
+        let inertia = torque * 0.25 / spec.motor.rated_speed;
+        for (what, deviate) in DEVIATIONS {
+            let mut plant = plant_of(spec);
+            deviate(&mut plant);
+            plant.mechanics = Some(Mechanics {
+                inertia,
+                opposing_torque: 0.0,
+                external_torque: 0.0,
+                viscous: 0.0,
+            });
+            let plant = Plant::new(plant, 0.2, 0.0).expect("a plant");
+            let engine = drive.engine(Model::Fixed, drive.set_point(rated));
+            let delay = run_of(spec, 0.0, 0.0).delay;
+            let mut closed = ClosedLoop::new(plant, engine, delay);
+            for goal in [1.0, -1.0] {
+                closed.controller().set_current(goal * rated);
+                closed.run((0.22 / spec.inverter.t_s) as usize, &mut ());
+                let fault = closed.controller().fault();
+                assert_ne!(
+                    fault,
+                    Some(Fault::Residual),
+                    "{}, {law}, {what}: set-point {goal}",
+                    motor.name
+                );
             }
         }
     });

@@ -17,18 +17,15 @@ struct Sensor {
 }
 
 impl Sensor {
-    /// Edges passed from the first rising one, even while the sensor reads 1.
-    fn passed(self, theta_e: f64) -> f64 {
+    fn is_high(self, theta_e: f64) -> bool {
         let turns = floor((theta_e - self.rise) / TAU);
-        let is_high = theta_e - self.rise - turns * TAU < self.high;
-        2.0 * turns + if is_high { 0.0 } else { 1.0 }
+        theta_e - self.rise - turns * TAU < self.high
     }
 
-    /// Angle of the edge behind which `passed` are passed.
-    fn edge(self, passed: f64) -> f64 {
-        let turns = floor(passed / 2.0);
-        let into = if passed > 2.0 * turns { self.high } else { 0.0 };
-        self.rise + turns * TAU + into
+    /// The rising or falling edge that is nearest to an angle.
+    fn edge_near(self, is_rising: bool, theta_e: f64) -> f64 {
+        let edge = self.rise + if is_rising { 0.0 } else { self.high };
+        edge + floor((theta_e - edge) / TAU + 0.5) * TAU
     }
 }
 
@@ -38,6 +35,9 @@ pub(super) struct Sensors {
     sensors: [Sensor; 3],
     codes: [u8; 6],
     last_edge: f64,
+    /// Which of them read 1 at the end of the last sweep: the same edge may round to both sides of where
+    /// one sweep ends and the next begins, a turn apart.
+    high: Option<[bool; 3]>,
 }
 
 impl Sensors {
@@ -55,6 +55,7 @@ impl Sensors {
             sensors,
             codes,
             last_edge: f64::NEG_INFINITY,
+            high: None,
         }
     }
 
@@ -71,17 +72,16 @@ impl Sensors {
         self.last_edge
     }
 
-    /// Edges of each sensor passed.
-    fn half_turns(&self, theta_e: f64) -> [f64; 3] {
-        self.sensors.map(|sensor| sensor.passed(theta_e))
+    /// Which sensors read 1.
+    fn are_high(&self, theta_e: f64) -> [bool; 3] {
+        self.sensors.map(|sensor| sensor.is_high(theta_e))
     }
 
     /// Hall code at an electrical angle, in the motor's wiring. A sensor combination that ideal
     /// placement never shows is returned as it is.
     pub(super) fn code(&self, theta_e: f64) -> u8 {
-        let raw = self.half_turns(theta_e).iter().fold(0_u8, |code, n| {
-            code << 1 | u8::from(n.rem_euclid(2.0) == 0.0)
-        });
+        let high = self.are_high(theta_e).into_iter();
+        let raw = high.fold(0_u8, |code, is_high| code << 1 | u8::from(is_high));
         IDEAL_CODES
             .iter()
             .position(|&code| code == raw)
@@ -90,11 +90,16 @@ impl Sensors {
 
     /// Records edges while the angle moves linearly from `from` to `to` during `[t, t + h]`.
     pub(super) fn sweep(&mut self, from: f64, to: f64, t: f64, h: f64) {
-        let (before, after) = (self.half_turns(from), self.half_turns(to));
+        let before = self.high.unwrap_or_else(|| self.are_high(from));
+        let after = self.are_high(to);
+        self.high = Some(after);
         for x in 0..3 {
             if before[x] != after[x] {
-                let edge = self.sensors[x].edge(before[x].max(after[x]));
-                self.last_edge = self.last_edge.max(t + h * (edge - from) / (to - from));
+                // Backward, a sensor that begins to read 1 passes its falling edge.
+                let is_rising = after[x] == (to > from);
+                let edge = self.sensors[x].edge_near(is_rising, to);
+                let share = ((edge - from) / (to - from)).clamp(0.0, 1.0);
+                self.last_edge = self.last_edge.max(t + h * share);
             }
         }
     }
@@ -126,6 +131,7 @@ mod tests {
         assert_eq!(sensors.last_edge(), f64::NEG_INFINITY);
         sensors.sweep(degrees(34.0), degrees(38.0), 1.0, 1.0);
         assert!((sensors.last_edge() - 1.25).abs() < 1e-12);
+        sensors.sweep(degrees(38.0), degrees(92.0), 2.0, 1.0);
         sensors.sweep(degrees(92.0), degrees(88.0), 3.0, 1.0);
         assert!((sensors.last_edge() - 3.5).abs() < 1e-12);
         assert_eq!(sensors.code(degrees(33.0)), 0b001);
