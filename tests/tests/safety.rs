@@ -397,7 +397,7 @@ fn watched() -> Drive<Watched> {
 fn currents_that_do_not_follow_the_voltages_trip_after_their_time_and_no_sooner() {
     // No current flows, whatever the voltage.
     let mut drive = watched();
-    let first = (1..).find(|_| {
+    let first = (1..200).find(|_| {
         step(&mut drive, [ZERO; 2], HALL);
         drive.status().fault.is_some()
     });

@@ -45,8 +45,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         words: &Words<'b>,
         currents: Phases<'b, 3>,
         sector: Expr<'b>,
-        rotor: Option<(&Rotor<'b>, Option<Phases<'b>>)>,
-        set_point: Expr<'b>,
+        (rotor, set_point): (Option<(&Rotor<'b>, Option<Phases<'b>>)>, Expr<'b>),
         third: Coefficient,
         outgoing: Option<Expr<'b>>,
     ) -> Option<Emf<'b>> {

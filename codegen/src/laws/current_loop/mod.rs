@@ -183,8 +183,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             &words,
             currents,
             sector_seen,
-            rotor.map(|rotor| (rotor, shape)),
-            j,
+            (rotor.map(|rotor| (rotor, shape)), j),
             third,
             outgoing,
         );

@@ -51,7 +51,6 @@ impl<'b> ResidualWatch<'b> {
     /// The residual that wrong motor data, bus, dead time and Hall sensors may cause, by set-point and
     /// speed; added to the open stage.
     fn allowed(
-        &self,
         l: &Lowering<'b>,
         [k_current, k_speed]: [Coefficient; 2],
         rotor: &Rotor<'b>,
@@ -63,7 +62,7 @@ impl<'b> ResidualWatch<'b> {
         let doc = format!("Residual allowed always, {}.", engineering(dead, "V"));
         let always = l.number("residual_least", l.volts_word(dead), &doc);
         let by_speed = k_speed * rotor.step_angle.abs();
-        let unseen = self.unseen(l);
+        let unseen = Self::unseen(l);
         named! {
             let residual_by_speed = rotor.tracking.choose(by_speed, unseen);
         }
@@ -71,7 +70,7 @@ impl<'b> ResidualWatch<'b> {
     }
 
     /// Residual of an EMF while the angle is unknown.
-    fn unseen(&self, l: &Lowering<'b>) -> Expr<'b> {
+    fn unseen(l: &Lowering<'b>) -> Expr<'b> {
         let (motor, inverter) = (&l.spec.motor, &l.spec.inverter);
         let pole_pairs = f64::from(motor.pole_pairs);
         let speed = match l.spec.start_periods() {
@@ -135,7 +134,7 @@ impl<'b> ResidualWatch<'b> {
         let count = self.count.read();
         let most = count.interval().high as i32;
         named! {
-            let residual_allowed = self.allowed(l, coefficients, rotor, j);
+            let residual_allowed = Self::allowed(l, coefficients, rotor, j);
             let residual_learnt = q.abs().max(d.abs() << 1);
             let residual_now = residual.a().abs().max(residual.b().abs());
             let residual_seen = rotor.tracking.choose(residual_learnt, residual_now - residual_learnt);

@@ -32,7 +32,7 @@ impl Sensor {
 /// The three sensors and the time of the last edge.
 #[derive(Clone, Debug)]
 pub(super) struct Sensors {
-    sensors: [Sensor; 3],
+    each: [Sensor; 3],
     codes: [u8; 6],
     last_edge: f64,
     /// Which of them read 1 at the end of the last sweep: the same edge may round to both sides of where
@@ -43,7 +43,7 @@ pub(super) struct Sensors {
 impl Sensors {
     /// Sensors with edges at these angles, which each is displaced from.
     pub(super) fn new(edges_deg: [f64; 6], error_deg: [f64; 3], codes: [u8; 6]) -> Self {
-        let sensors = std::array::from_fn(|x| {
+        let each = std::array::from_fn(|x| {
             // Ha rises where S2 begins, and falls three edges on.
             let [rise, fall] = [1 + 2 * x, (4 + 2 * x) % 6].map(|edge| edges_deg[edge]);
             Sensor {
@@ -52,7 +52,7 @@ impl Sensors {
             }
         });
         Self {
-            sensors,
+            each,
             codes,
             last_edge: f64::NEG_INFINITY,
             high: None,
@@ -74,7 +74,7 @@ impl Sensors {
 
     /// Which sensors read 1.
     fn are_high(&self, theta_e: f64) -> [bool; 3] {
-        self.sensors.map(|sensor| sensor.is_high(theta_e))
+        self.each.map(|sensor| sensor.is_high(theta_e))
     }
 
     /// Hall code at an electrical angle, in the motor's wiring. A sensor combination that ideal
@@ -97,7 +97,7 @@ impl Sensors {
             if before[x] != after[x] {
                 // Backward, a sensor that begins to read 1 passes its falling edge.
                 let is_rising = after[x] == (to > from);
-                let edge = self.sensors[x].edge_near(is_rising, to);
+                let edge = self.each[x].edge_near(is_rising, to);
                 let share = ((edge - from) / (to - from)).clamp(0.0, 1.0);
                 self.last_edge = self.last_edge.max(t + h * share);
             }
