@@ -155,8 +155,8 @@ typedef enum {
     /** The bus voltage that `set_bus` told was below `under_voltage`. */
     HEXAGEN_FAULT_UNDER_VOLTAGE = 7,
     /**
-     * The currents did not follow the voltages for the `residual_timeout`: a dead current sensor, an
-     * open or exchanged phase, a sensor's wrong sign, or wrong motor data.
+     * The currents did not follow the voltages for the `residual_timeout` longer than they did: a dead
+     * current sensor, an open or exchanged phase, a sensor's wrong sign, or wrong motor data.
      */
     HEXAGEN_FAULT_RESIDUAL = 8,
     /** A current ADC was at an end of its range: count 0, the largest count, or more. */
@@ -488,11 +488,11 @@ typedef struct {
  *
  * It trips on what samples show: a current above the trip level, a current ADC at an end of its
  * range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
- * `set_bus` tells. It cannot see, and nothing else here does:
+ * `set_bus` tells. It cannot see, and but for the option named nothing else here does:
  *
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
  *   mid-scale can let the true current rise to several times the trip level. The option
- *   `residual_timeout` notices most of these, after its time (HEXAGEN_FAULT_RESIDUAL);
+ *   `residual_timeout` notices many of these, after its time (HEXAGEN_FAULT_RESIDUAL);
  * - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
  * - a control interrupt that does not come: the last command stands;
  * - heat, shoot-through, and what is shorter than a control period;

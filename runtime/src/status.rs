@@ -52,8 +52,8 @@ pub enum Fault {
     OverVoltage = 6,
     /// The bus voltage that `set_bus` told was below `under_voltage`.
     UnderVoltage = 7,
-    /// The currents did not follow the voltages for the `residual_timeout`: a dead current sensor, an
-    /// open or exchanged phase, a sensor's wrong sign, or wrong motor data.
+    /// The currents did not follow the voltages for the `residual_timeout` longer than they did: a dead
+    /// current sensor, an open or exchanged phase, a sensor's wrong sign, or wrong motor data.
     Residual = 8,
     /// A current ADC was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,

@@ -309,11 +309,12 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// It trips on what samples show: a current above the trip level, a current ADC at an end of its
 /// range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
-/// [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see, and nothing else here does:
+/// [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see, and but for the option named nothing
+/// else here does:
 ///
 /// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
 ///   mid-scale can let the true current rise to several times the trip level. The option
-///   `residual_timeout` notices most of these, after its time ([`Fault::Residual`]);
+///   `residual_timeout` notices many of these, after its time ([`Fault::Residual`]);
 /// - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
 /// - a control interrupt that does not come: the last command stands;
 /// - heat, shoot-through, and what is shorter than a control period;

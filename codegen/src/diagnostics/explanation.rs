@@ -201,7 +201,7 @@ impl Code {
                 "Three Hall sensors 120 electrical degrees apart show six codes, each one bit from the next.",
                 "pole_pairs = 4\nhall_codes = [1, 2, 3, 4, 5, 6]",
                 "pole_pairs = 4\nhall_codes = [1, 5, 4, 6, 2, 3]",
-                "Turn the motor forward by hand with the legs off, and note the codes in the order in which they come.",
+                "Turn the motor forward by hand with the legs off, and note the codes in the order in which they come; `hall_angles`, if any, are those at which these sectors begin, about -30, 30, 90, 150, 210 and 270 degrees.",
             ),
             _ => say(
                 "The field takes a plain number.",
@@ -221,7 +221,7 @@ impl Code {
                 "Raise the PWM frequency, or check R and L and their bases.",
             ),
             Self::BusTooLow => say(
-                "The line-to-line EMF at rated speed and what rated current drops in two phases exceed the bus by far: a value is wrong.",
+                "The line-to-line EMF at rated speed exceeds the bus, or together with what rated current drops in two phases exceeds it by more than a quarter: the motor cannot turn so fast on it, and probably a value is wrong.",
                 "rated_speed = \"5000 rpm\"",
                 "rated_speed = \"2000 rpm\"",
                 "Data sheets often print the no-load speed as speed: write it as `no_load_speed`, and the speed under load as `rated_speed`; else check the bases of EMF and resistance.",

@@ -67,7 +67,7 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         "|---|---|---|---|---|---|---|".to_owned(),
         format!("| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |", codes.join(" | ")),
         format!("| current into, out of phase (positive set-point) | {} |", pairs().join(" | ")),
-        format!("| begins at, electrical | {} |", angles.join(" | ")),
+        format!("| begins at (forward, `theta_e`) | {} |", angles.join(" | ")),
         String::new(),
         "More: `hexagen::conventions`.".to_owned(),
     ];
@@ -152,7 +152,8 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         0 => "At any speed `brake()` shorts the motor, which takes at most `max_current` then."
             .to_owned(),
         periods => {
-            let electrical = FRAC_PI_3 / (f64::from(periods) * inverter.t_s);
+            let sector = FRAC_PI_3 * spec.motor.widest_sector();
+            let electrical = sector / (f64::from(periods) * inverter.t_s);
             format!(
                 "Up to {} `brake()` shorts the motor; above, it opposes the rotation.",
                 rpm(electrical / f64::from(spec.motor.pole_pairs))

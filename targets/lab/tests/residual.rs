@@ -8,7 +8,9 @@ use hexagen_lab::engine::{
 };
 use hexagen_lab::faults::{FaultStudy, Part, study};
 use hexagen_lab::plant::{Mechanics, Plant, PlantParams};
+use hexagen_tests::random_motor::RandomMotor;
 use rayon::prelude::*;
+use std::env;
 
 /// The default drives with the watch.
 const LAWS: [&str; 2] = ["pdcc:residual_timeout=5ms", "pi-pwm:residual_timeout=5ms"];
@@ -109,75 +111,100 @@ const DEVIATIONS: [Deviation; 9] = [
     }),
 ];
 
-#[test]
-fn steps_and_reversals_of_the_torque_trip_no_deviating_drive() {
-    let motors = library();
-    motors.par_iter().enumerate().for_each(|(number, motor)| {
-        // Both laws take turns.
-        for (law, share) in [(LAWS[number % 2], 0.1), (LAWS[(number + 1) % 2], 0.6)] {
-            let drive = drive(motor.name, law);
-            let spec = &drive.spec;
-            let omega = share * spec.motor.rated_speed;
-            let rated = spec.motor.rated_current;
-            for (what, deviate) in DEVIATIONS {
-                let mut plant = plant_of(spec);
-                deviate(&mut plant);
-                let plant = Plant::new(plant, 0.2, omega).expect("a plant");
-                let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
-                let delay = run_of(spec, omega, 0.0).delay;
-                let mut closed = ClosedLoop::new(plant, engine, delay);
-                let part = (0.02 / spec.inverter.t_s) as usize;
-                for goal in [0.0, 1.0, -1.0, 1.0, 0.0, -1.0, -0.1] {
-                    closed.controller().set_current(goal * rated);
-                    closed.run(part, &mut ());
-                    let fault = closed.controller().fault();
-                    assert_ne!(
-                        fault,
-                        Some(Fault::Residual),
-                        "{}, {law} at {share} of the rated speed, {what}: set-point {goal}",
-                        motor.name
-                    );
-                }
+/// A trip in steps and reversals of the torque, the shaft held at a part of the rated speed.
+fn trip_in_steps(drive: &Prepared, share: f64) -> Option<(Fault, String)> {
+    let spec = &drive.spec;
+    let omega = share * spec.motor.rated_speed;
+    let rated = spec.motor.rated_current;
+    for (what, deviate) in DEVIATIONS {
+        let mut plant = plant_of(spec);
+        deviate(&mut plant);
+        let plant = Plant::new(plant, 0.2, omega).expect("a plant");
+        let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
+        let delay = run_of(spec, omega, 0.0).delay;
+        let mut closed = ClosedLoop::new(plant, engine, delay);
+        let part = (0.02 / spec.inverter.t_s) as usize;
+        for goal in [0.0, 1.0, -1.0, 1.0, 0.0, -1.0, -0.1] {
+            closed.controller().set_current(goal * rated);
+            closed.run(part, &mut ());
+            if let Some(fault) = closed.controller().fault() {
+                let what = format!("{share} of the rated speed, {what}, set-point {goal}");
+                return Some((fault, what));
             }
         }
-    });
+    }
+    None
+}
+
+/// A trip on a free shaft, which reaches the rated speed in a quarter of a second and then
+/// reverses.
+fn trip_in_start(drive: &Prepared) -> Option<(Fault, String)> {
+    let spec = &drive.spec;
+    let rated = spec.motor.rated_current;
+    let inertia = rated * spec.torque_constant() * 0.25 / spec.motor.rated_speed;
+    for (what, deviate) in DEVIATIONS {
+        let mut plant = plant_of(spec);
+        deviate(&mut plant);
+        plant.mechanics = Some(Mechanics {
+            inertia,
+            opposing_torque: 0.0,
+            external_torque: 0.0,
+            viscous: 0.0,
+        });
+        let plant = Plant::new(plant, 0.2, 0.0).expect("a plant");
+        let engine = drive.engine(Model::Fixed, drive.set_point(rated));
+        let delay = run_of(spec, 0.0, 0.0).delay;
+        let mut closed = ClosedLoop::new(plant, engine, delay);
+        for goal in [1.0, -1.0] {
+            closed.controller().set_current(goal * rated);
+            closed.run((0.22 / spec.inverter.t_s) as usize, &mut ());
+            if let Some(fault) = closed.controller().fault() {
+                let what = format!("start, {what}, set-point {goal}");
+                return Some((fault, what));
+            }
+        }
+    }
+    None
+}
+
+/// At a low and a higher speed, and from standstill.
+fn trips_of(drive: &Prepared) -> Vec<(Fault, String)> {
+    let found = [0.1, 0.6].map(|share| trip_in_steps(drive, share));
+    let found = found.into_iter().chain([trip_in_start(drive)]).flatten();
+    found
+        .map(|(fault, what)| (fault, format!("{}: {what}", drive.motor)))
+        .collect()
 }
 
 #[test]
-fn a_free_shaft_starts_and_reverses_without_a_trip() {
-    let motors = library();
-    motors.par_iter().enumerate().for_each(|(number, motor)| {
-        let law = LAWS[number % 2];
-        let drive = drive(motor.name, law);
-        let spec = &drive.spec;
-        let rated = spec.motor.rated_current;
-        // From standstill to the rated speed in a quarter of a second.
-        let torque = rated * spec.torque_constant();
-        let inertia = torque * 0.25 / spec.motor.rated_speed;
-        for (what, deviate) in DEVIATIONS {
-            let mut plant = plant_of(spec);
-            deviate(&mut plant);
-            plant.mechanics = Some(Mechanics {
-                inertia,
-                opposing_torque: 0.0,
-                external_torque: 0.0,
-                viscous: 0.0,
-            });
-            let plant = Plant::new(plant, 0.2, 0.0).expect("a plant");
-            let engine = drive.engine(Model::Fixed, drive.set_point(rated));
-            let delay = run_of(spec, 0.0, 0.0).delay;
-            let mut closed = ClosedLoop::new(plant, engine, delay);
-            for goal in [1.0, -1.0] {
-                closed.controller().set_current(goal * rated);
-                closed.run((0.22 / spec.inverter.t_s) as usize, &mut ());
-                let fault = closed.controller().fault();
-                assert_ne!(
-                    fault,
-                    Some(Fault::Residual),
-                    "{}, {law}, {what}: set-point {goal}",
-                    motor.name
-                );
-            }
-        }
+fn no_deviating_motor_of_the_library_trips_in_steps_reversals_and_starts() {
+    // Both laws take turns.
+    let found: Vec<(Fault, String)> = (library().par_iter().enumerate())
+        .flat_map_iter(|(number, motor)| trips_of(&drive(motor.name, LAWS[number % 2])))
+        .collect();
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+/// Random motors, in a push and where `HEXAGEN_WHOLE_PRODUCTS` is set, as in the nightly run.
+const DRAWN: [usize; 2] = [6, 100];
+
+#[test]
+fn hardly_a_deviating_random_motor_trips() {
+    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
+    let drawn = (1000..).filter_map(|seed: u64| {
+        let text = RandomMotor::new(seed).toml();
+        let name = format!("motor {seed}");
+        let file = format!("{name}.toml");
+        prepare(&MotorSource { name, file, text }, Some(LAWS[0])).ok()
     });
+    let drawn: Vec<Prepared> = drawn.take(DRAWN[usize::from(is_whole)]).collect();
+    let found: Vec<(Fault, String)> = drawn.par_iter().flat_map_iter(trips_of).collect();
+    // A motor whose current rises far in a period may trip by its current where L is low.
+    let of_watch: Vec<_> = (found.iter())
+        .filter(|(fault, _)| *fault == Fault::Residual)
+        .collect();
+    // Two deviations at once, with a rotor that runs up within two sectors, may be too much.
+    let runs = 3 * DEVIATIONS.len() * drawn.len();
+    println!("{} of {runs} runs: {of_watch:#?}", of_watch.len());
+    assert!(300 * of_watch.len() <= runs, "{of_watch:#?}");
 }

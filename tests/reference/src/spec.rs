@@ -68,6 +68,14 @@ impl Motor {
         })
     }
 
+    /// Width of the widest sector, radian.
+    pub fn widest_sector(&self) -> f64 {
+        let widths = self.sectors_beyond_places().map(|[_, width]| width);
+        widths
+            .into_iter()
+            .fold(std::f64::consts::FRAC_PI_3, f64::max)
+    }
+
     /// The sensors that are turned round where all three stand 60 degrees apart, as bits of the code:
     /// the two codes that do not occur are then those of equal sensors. Else 0.
     pub fn hall_inverted(&self) -> u8 {

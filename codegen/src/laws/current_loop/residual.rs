@@ -75,7 +75,10 @@ impl<'b> ResidualWatch<'b> {
         let pole_pairs = f64::from(motor.pole_pairs);
         let speed = match l.spec.start_periods() {
             0 => inverter.maximum_speed,
-            periods => TAU / 3.0 / (f64::from(periods) * inverter.t_s * pole_pairs),
+            periods => {
+                let sectors = TAU / 3.0 * motor.widest_sector();
+                sectors / (f64::from(periods) * inverter.t_s * pole_pairs)
+            }
         };
         let volts = UNSEEN_EMF * motor.emf_constant * speed;
         let doc = format!(

@@ -117,7 +117,8 @@ fn stall_timeout(
     match (&inverter.stall_timeout, motor.pole_pairs) {
         (Some(given), _) => given.si,
         (None, Some(pole_pairs)) if is_speed_expected => {
-            let sector = FRAC_PI_3 / (minimum_speed * f64::from(pole_pairs));
+            let sector =
+                FRAC_PI_3 * motor.widest_sector() / (minimum_speed * f64::from(pole_pairs));
             STALL_TIMEOUT.max(STALL_SECTORS * sector)
         }
         (None, _) => 0.0,

@@ -334,5 +334,8 @@ fn read_hall_angles(reader: &Reader, errors: &mut Collector) -> Option<[f64; 6]>
         ));
         return None;
     }
-    Some(std::array::from_fn(|k| HALL_ANGLES[k] + errors_of[k]))
+    // As given, but for whole turns.
+    Some(std::array::from_fn(|k| {
+        angles[k] - 360.0 * ((angles[k] - HALL_ANGLES[k]) / 360.0).round()
+    }))
 }

@@ -134,7 +134,8 @@ pub(super) fn check_speeds(
     }
     let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
     let pole_pairs = f64::from(motor.pole_pairs?);
-    let periods = TAU / (maximum * pole_pairs * t_s);
+    // A sample in the narrowest sector.
+    let periods = TAU / (maximum * pole_pairs * t_s) * motor.narrowest_sector();
     if periods < LEAST_PERIODS * (1.0 - 1e-9) {
         let fastest = maximum * periods / LEAST_PERIODS;
         let f_pwm = f64::from(inverter.pwm_per_control)

@@ -161,7 +161,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::quantity("residual_timeout", &[D::Time], 1e-5, 1.0, "5 ms")
             .by_default("none: the currents are not compared with the voltages")
-            .about("Time for which the currents may not follow the voltages as the motor's data say; then the drive trips: a dead current sensor, an open or exchanged phase, wrong motor data; 50 control periods to 65,535; only with `emf: observer`"),
+            .about("Time, net of periods in which they do, after which currents that do not follow the voltages as the motor's data say trip the drive: a dead current sensor, an open or exchanged phase, wrong motor data; 50 control periods to 65,535; only with `emf: observer`"),
         |options| Some(number(options.residual_periods?)),
     ),
     Row::of(
@@ -474,11 +474,10 @@ fn read_residual_timeout(
 ) -> Option<u32> {
     const OPTION: &str = "residual_timeout";
     let timeout = reader.plain_quantity(errors, OPTION)?;
-    if emf != Some(EmfSource::Observer) {
-        let other = emf.map_or_else(
-            || "a law that does not use the EMF".to_owned(),
-            |emf| format!("emf: {}", word(emf)),
-        );
+    // A law that does not use the EMF refuses the option itself.
+    let emf = emf?;
+    if emf != EmfSource::Observer {
+        let other = format!("emf: {}", word(emf));
         errors.push(catalogue::option_without_effect(
             &timeout.part.location,
             OPTION,

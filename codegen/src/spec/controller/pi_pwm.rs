@@ -118,7 +118,7 @@ impl Options for PiPwmSpec {
             check_six_step(reader, errors);
         }
         if !feed_forward {
-            for name in ["emf", "emf_filter"] {
+            for name in ["emf", "emf_filter", "residual_timeout"] {
                 let Some(field) = reader.field(name) else {
                     continue;
                 };

@@ -503,5 +503,4 @@ fn a_rating_a_little_beyond_the_bus_is_a_warning_with_what_the_bus_allows() {
         told.contains("with the rated current it reaches "),
         "{told}"
     );
-    println!("{told}");
 }

@@ -198,7 +198,7 @@ fn tone(row: &FaultRow, trip_current: f64) -> Tone {
 }
 
 /// What the counts mean for the board.
-const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, a stall and the currents. Against what shows in none of them the \
+const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, whether the rotor stands and whether the currents follow the voltages. Against what shows in none of them the \
     board needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt and a \
     thermal limit.";
 
@@ -242,7 +242,7 @@ fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
     }
     if study.residual_timeout_s.is_none() {
         lines.push(
-            "Currents that do not follow the voltages trip nothing: `residual_timeout` of the controller turns that on, with `emf: observer`."
+            "Currents that do not follow the voltages trip nothing: the option `residual_timeout` turns that on where the controller has `emf: observer`."
                 .to_owned(),
         );
     }

@@ -211,7 +211,7 @@ pub fn allowed_residual(spec: &Spec) -> [f64; 4] {
     let dead_time = inverter.v_bus * 1.5e-6 / inverter.pwm_period();
     let waits = f64::from(inverter.start_periods) * inverter.t_s;
     let fastest = if waits > 0.0 {
-        std::f64::consts::TAU / 3.0 / waits
+        2.0 * motor.widest_sector() / waits
     } else {
         f64::from(motor.pole_pairs) * inverter.omega_max
     };
