@@ -81,7 +81,7 @@ fn a_variant_changes_the_code() {
         "pdcc:reference=quasi_square",
     ])
     .stdout;
-    assert!(own.contains("theta") && !other.contains("theta"));
+    assert!(own.contains("interpolate_angle") && !other.contains("interpolate_angle"));
 }
 
 #[test]
