@@ -85,8 +85,8 @@ pub trait Control: Sized + 'static {
     /// wherever it implements `MeasuredBus`.
     const TOLD_BUS: Option<fn(Word) -> BusWords<Self>> = None;
 
-    /// Whether the currents did not follow the voltages for the `residual_timeout`, with which the
-    /// macro sets it; else `None`.
+    /// Tells from the law's state that the currents have not followed the voltages for the
+    /// `residual_timeout`. The macro sets it with that option.
     const HAS_LOST_CURRENTS: Option<fn(&Self::State) -> bool> = None;
 
     /// Set-point word of a current: bits of a number with 16 fraction bits, ampere.

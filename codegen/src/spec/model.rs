@@ -158,20 +158,23 @@ pub struct MotorSpec {
     pub resistance_tolerance: f64,
     /// Hall codes of sectors S1 to S6 (Ha in bit 2).
     pub hall_codes: [u8; 6],
-    /// Electrical angles of the Hall edges at which sectors S1 to S6 begin, forward: degrees, S1 about
-    /// -30, each at most 20 from its place.
+    /// Electrical angles at which sectors S1 to S6 begin in forward rotation, degrees: those of
+    /// [`HALL_ANGLES`], each at most 20 degrees off.
     pub hall_angles: [f64; 6],
 }
 
-/// Widths of sectors S1 to S6 over 60 degrees.
-pub(crate) fn sector_widths(hall_angles: &[f64; 6]) -> [f64; 6] {
-    std::array::from_fn(|k| {
+/// Width of the narrowest and of the widest sector between Hall edges at these angles, over 60 degrees.
+pub(crate) fn extreme_sectors(hall_angles: &[f64; 6]) -> [f64; 2] {
+    let widths = (0..6).map(|k| {
         let next = hall_angles[(k + 1) % 6];
         (next - hall_angles[k]).rem_euclid(360.0) / 60.0
+    });
+    widths.fold([1.0, 1.0], |[narrowest, widest], width| {
+        [f64::min(narrowest, width), f64::max(widest, width)]
     })
 }
 
-/// Those of sensors in their places.
+/// `hall_angles` of sensors in their places.
 pub const HALL_ANGLES: [f64; 6] = [-30.0, 30.0, 90.0, 150.0, 210.0, 270.0];
 
 impl MotorSpec {
@@ -198,9 +201,8 @@ impl MotorSpec {
 
     /// Width of the widest sector over 60 degrees.
     pub fn widest_sector(&self) -> f64 {
-        sector_widths(&self.hall_angles)
-            .into_iter()
-            .fold(1.0, f64::max)
+        let [_, widest] = extreme_sectors(&self.hall_angles);
+        widest
     }
 
     /// Hall sensors that the drive inverts first, as bits of the code: one of sensors that stand 60

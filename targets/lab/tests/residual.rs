@@ -111,60 +111,56 @@ const DEVIATIONS: [Deviation; 9] = [
     }),
 ];
 
-/// A trip in steps and reversals of the torque, the shaft held at a part of the rated speed.
-fn trip_in_steps(drive: &Prepared, share: f64) -> Option<(Fault, String)> {
+/// The first trip of a deviating plant whose set-point goes through these parts of the rated current,
+/// each for so many seconds.
+fn trip_in(
+    drive: &Prepared,
+    omega: f64,
+    mechanics: Option<Mechanics>,
+    (goals, seconds): (&[f64], f64),
+) -> Option<(Fault, String)> {
     let spec = &drive.spec;
-    let omega = share * spec.motor.rated_speed;
-    let rated = spec.motor.rated_current;
     for (what, deviate) in DEVIATIONS {
         let mut plant = plant_of(spec);
         deviate(&mut plant);
+        plant.mechanics = mechanics;
         let plant = Plant::new(plant, 0.2, omega).expect("a plant");
         let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
         let delay = run_of(spec, omega, 0.0).delay;
         let mut closed = ClosedLoop::new(plant, engine, delay);
-        let part = (0.02 / spec.inverter.t_s) as usize;
-        for goal in [0.0, 1.0, -1.0, 1.0, 0.0, -1.0, -0.1] {
-            closed.controller().set_current(goal * rated);
-            closed.run(part, &mut ());
+        for goal in goals {
+            closed
+                .controller()
+                .set_current(goal * spec.motor.rated_current);
+            closed.run((seconds / spec.inverter.t_s) as usize, &mut ());
             if let Some(fault) = closed.controller().fault() {
-                let what = format!("{share} of the rated speed, {what}, set-point {goal}");
-                return Some((fault, what));
+                return Some((fault, format!("{what}, set-point {goal}")));
             }
         }
     }
     None
 }
 
-/// A trip on a free shaft, which reaches the rated speed in a quarter of a second and then
-/// reverses.
+/// A trip in steps and reversals of the torque, the shaft held at a part of the rated speed.
+fn trip_in_steps(drive: &Prepared, share: f64) -> Option<(Fault, String)> {
+    let goals = [0.0, 1.0, -1.0, 1.0, 0.0, -1.0, -0.1];
+    let omega = share * drive.spec.motor.rated_speed;
+    let (fault, what) = trip_in(drive, omega, None, (&goals, 0.02))?;
+    Some((fault, format!("{share} of the rated speed, {what}")))
+}
+
+/// A trip on a free shaft, which reaches the rated speed in a quarter of a second and then reverses.
 fn trip_in_start(drive: &Prepared) -> Option<(Fault, String)> {
-    let spec = &drive.spec;
-    let rated = spec.motor.rated_current;
-    let inertia = rated * spec.torque_constant() * 0.25 / spec.motor.rated_speed;
-    for (what, deviate) in DEVIATIONS {
-        let mut plant = plant_of(spec);
-        deviate(&mut plant);
-        plant.mechanics = Some(Mechanics {
-            inertia,
-            opposing_torque: 0.0,
-            external_torque: 0.0,
-            viscous: 0.0,
-        });
-        let plant = Plant::new(plant, 0.2, 0.0).expect("a plant");
-        let engine = drive.engine(Model::Fixed, drive.set_point(rated));
-        let delay = run_of(spec, 0.0, 0.0).delay;
-        let mut closed = ClosedLoop::new(plant, engine, delay);
-        for goal in [1.0, -1.0] {
-            closed.controller().set_current(goal * rated);
-            closed.run((0.22 / spec.inverter.t_s) as usize, &mut ());
-            if let Some(fault) = closed.controller().fault() {
-                let what = format!("start, {what}, set-point {goal}");
-                return Some((fault, what));
-            }
-        }
-    }
-    None
+    let motor = &drive.spec.motor;
+    let torque = motor.rated_current * drive.spec.torque_constant();
+    let shaft = Mechanics {
+        inertia: torque * 0.25 / motor.rated_speed,
+        opposing_torque: 0.0,
+        external_torque: 0.0,
+        viscous: 0.0,
+    };
+    let (fault, what) = trip_in(drive, 0.0, Some(shaft), (&[1.0, -1.0], 0.22))?;
+    Some((fault, format!("start, {what}")))
 }
 
 /// At a low and a higher speed, and from standstill.

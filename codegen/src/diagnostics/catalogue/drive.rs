@@ -154,13 +154,13 @@ pub fn bus_too_low(
     )
 }
 
-/// A rating of which the bus leaves part of the current at rated speed. In volt: the bus; EMF line to
-/// line at rated speed; drop of rated current in two phases. What is left at rated speed, ampere and
+/// A rating of which the bus leaves part of the current at rated speed. In volt: EMF line to line at
+/// rated speed; drop of rated current in two phases. What is left at rated speed, ampere and
 /// newton metres; the speed at rated current, mechanical rad/s.
 pub fn rating_beyond_bus(
     bus: &Part,
     [speed, current]: [&Part; 2],
-    [_, emf, drop]: [f64; 3],
+    [emf, drop]: [f64; 2],
     [left, torque, reached]: [f64; 3],
 ) -> Diagnostic {
     with_parts(

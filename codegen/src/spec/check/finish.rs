@@ -117,8 +117,8 @@ fn stall_timeout(
     match (&inverter.stall_timeout, motor.pole_pairs) {
         (Some(given), _) => given.si,
         (None, Some(pole_pairs)) if is_speed_expected => {
-            let sector =
-                FRAC_PI_3 * motor.widest_sector() / (minimum_speed * f64::from(pole_pairs));
+            let [_, widest] = motor.extreme_sectors();
+            let sector = FRAC_PI_3 * widest / (minimum_speed * f64::from(pole_pairs));
             STALL_TIMEOUT.max(STALL_SECTORS * sector)
         }
         (None, _) => 0.0,
@@ -137,7 +137,8 @@ fn hall_glitches(
     let Some(pole_pairs) = motor.pole_pairs.filter(|_| inverter.hall_glitches > 0) else {
         return inverter.hall_glitches;
     };
-    let sector = FRAC_PI_3 * motor.narrowest_sector() / (maximum_speed * f64::from(pole_pairs));
+    let [narrowest, _] = motor.extreme_sectors();
+    let sector = FRAC_PI_3 * narrowest / (maximum_speed * f64::from(pole_pairs));
     let most = (sector / t_s - 1.0).floor();
     if f64::from(inverter.hall_glitches) > most {
         let part = reader.part("hall_glitches", String::new);

@@ -4,7 +4,7 @@ use super::emf::{self, Emf, Winding};
 use super::reader::{Given, Reader};
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
-use crate::spec::model::sector_widths;
+use crate::spec::model::extreme_sectors;
 use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::{EmfShape, HALL_ANGLES, MotorSpec};
@@ -82,18 +82,9 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
 }
 
 impl Motor<'_> {
-    /// Width of the widest sector over 60 degrees.
-    pub fn widest_sector(&self) -> f64 {
-        sector_widths(&self.hall_angles)
-            .into_iter()
-            .fold(1.0, f64::max)
-    }
-
-    /// Width of the narrowest.
-    pub fn narrowest_sector(&self) -> f64 {
-        sector_widths(&self.hall_angles)
-            .into_iter()
-            .fold(1.0, f64::min)
+    /// Width of the narrowest and of the widest sector, over 60 degrees.
+    pub fn extreme_sectors(&self) -> [f64; 2] {
+        extreme_sectors(&self.hall_angles)
     }
 
     /// The checked motor. None if something is missing or in error.
@@ -296,46 +287,37 @@ fn read_hall_codes(reader: &Reader, errors: &mut Collector) -> Option<[u8; 6]> {
     codes.try_into().ok()
 }
 
-/// Farthest place of a Hall edge from where it belongs, electrical degrees: more is rather a wrong
-/// order of the codes.
-const FARTHEST: f64 = 20.0;
+/// Largest placement error of a Hall edge, electrical degrees; a larger one is more likely a wrong order
+/// of the codes.
+const LARGEST_ERROR: f64 = 20.0;
 
-/// Six angles, each near its place, which a whole turn more or less does not change.
+/// Six angles, each near its place; whole turns more or less make no difference.
 fn read_hall_angles(reader: &Reader, errors: &mut Collector) -> Option<[f64; 6]> {
     const FIELD: &str = "hall_angles";
-    let angles = reader.each(FIELD, |one| {
+    let given = reader.each(FIELD, |one| {
         one.plain_quantity(errors, FIELD).map(|given| given.si)
     })?;
-    let errors_of: Vec<f64> = angles
-        .iter()
-        .zip(HALL_ANGLES.iter().cycle())
-        .map(|(angle, place)| (angle - place + 180.0).rem_euclid(360.0) - 180.0)
-        .collect();
-    let far = errors_of
-        .iter()
-        .position(|error| error.abs() > FARTHEST + 1e-9);
+    let within_a_turn =
+        |(angle, place): (&f64, &f64)| angle - 360.0 * ((angle - place) / 360.0).round();
+    let angles: Vec<f64> = given.iter().zip(&HALL_ANGLES).map(within_a_turn).collect();
+    let error_of = |k: usize| (angles[k] - HALL_ANGLES[k]).abs();
+    let far = (0..angles.len()).find(|&k| error_of(k) > LARGEST_ERROR + 1e-9);
     let problem = match far {
-        _ if angles.len() != 6 => Some(format!("{} angles instead of 6", angles.len())),
-        Some(k) => Some(format!(
+        _ if given.len() != 6 => format!("{} angles instead of 6", given.len()),
+        Some(k) => format!(
             "that of sector {} is {} deg from its place, {} deg",
             k + 1,
-            significant(errors_of[k].abs()),
+            significant(error_of(k)),
             HALL_ANGLES[k],
-        )),
-        None => None,
+        ),
+        None => return angles.try_into().ok(),
     };
-    if let Some(problem) = problem {
-        let part = reader.part(FIELD, String::new);
-        errors.push(catalogue::hall_angles(
-            &part.location,
-            &part.given,
-            &problem,
-            FARTHEST,
-        ));
-        return None;
-    }
-    // As given, but for whole turns.
-    Some(std::array::from_fn(|k| {
-        angles[k] - 360.0 * ((angles[k] - HALL_ANGLES[k]) / 360.0).round()
-    }))
+    let part = reader.part(FIELD, String::new);
+    errors.push(catalogue::hall_angles(
+        &part.location,
+        &part.given,
+        &problem,
+        LARGEST_ERROR,
+    ));
+    None
 }

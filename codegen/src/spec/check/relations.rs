@@ -79,7 +79,7 @@ pub(super) fn check_bus(
         warnings.push(catalogue::rating_beyond_bus(
             &bus.part,
             parts,
-            volts,
+            [emf, drop],
             [left, torque, reached],
         ));
         return Some(());
@@ -106,7 +106,8 @@ pub(super) fn slowest(
     capture: Option<HallCapture>,
 ) -> Option<f64> {
     let per_second = capture?.ticks_per_period() / inverter.t_s?;
-    let sector = FRAC_PI_3 * motor.widest_sector();
+    let [_, widest] = motor.extreme_sectors();
+    let sector = FRAC_PI_3 * widest;
     Some(per_second * sector / (GREATEST_AGE * f64::from(motor.pole_pairs?)))
 }
 
@@ -135,7 +136,8 @@ pub(super) fn check_speeds(
     let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
     let pole_pairs = f64::from(motor.pole_pairs?);
     // A sample in the narrowest sector.
-    let periods = TAU / (maximum * pole_pairs * t_s) * motor.narrowest_sector();
+    let [narrowest, widest] = motor.extreme_sectors();
+    let periods = TAU / (maximum * pole_pairs * t_s) * narrowest;
     if periods < LEAST_PERIODS * (1.0 - 1e-9) {
         let fastest = maximum * periods / LEAST_PERIODS;
         let f_pwm = f64::from(inverter.pwm_per_control)
@@ -149,7 +151,7 @@ pub(super) fn check_speeds(
         ));
     }
     let per_second = capture?.ticks_per_period() / t_s;
-    let ticks = per_second * FRAC_PI_3 * motor.widest_sector() / (minimum * pole_pairs);
+    let ticks = per_second * FRAC_PI_3 * widest / (minimum * pole_pairs);
     if ticks > GREATEST_AGE * (1.0 + 1e-9) {
         let least = minimum * ticks / GREATEST_AGE;
         let clock = match capture? {

@@ -112,7 +112,7 @@ pub struct LoopOptions {
     pub speed: Option<SpeedLoop>,
     /// Greatest rate at which the current set-point takes effect, ampere per second; none: at once.
     pub slew_rate: Option<f64>,
-    /// Time for which the currents may not follow the voltages, periods; none: not watched.
+    /// Time-out of the residual watch, control periods; none: the currents are not watched.
     pub residual_periods: Option<u32>,
 }
 
@@ -464,8 +464,8 @@ fn read_slew_rate(
     Some(rate.si)
 }
 
-/// Periods for which the currents may not follow the voltages: enough for a torque step with a wrong
-/// inductance to pass.
+/// Time-out of the residual watch, control periods: long enough for a torque step to pass where the
+/// inductance is wrong.
 fn read_residual_timeout(
     reader: &Reader,
     drive: &Surroundings,

@@ -35,8 +35,8 @@ pub(super) struct Sensors {
     each: [Sensor; 3],
     codes: [u8; 6],
     last_edge: f64,
-    /// Which of them read 1 at the end of the last sweep: the same edge may round to both sides of where
-    /// one sweep ends and the next begins, a turn apart.
+    /// Sensors that read 1 at the end of the last sweep. Kept, as the angle may be wrapped before the
+    /// next one begins: computed again it may round to the other side of an edge, which would be missed.
     high: Option<[bool; 3]>,
 }
 

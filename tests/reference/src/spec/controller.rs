@@ -41,7 +41,7 @@ pub struct LoopOptions {
     pub inertia: f64,
     /// Greatest rate of the current set-point in force, A/s; 0 without one.
     pub slew_rate: f64,
-    /// Periods for which the currents may not follow the voltages; 0 where that is not watched.
+    /// Time-out of the residual watch, control periods; 0 where the currents are not watched.
     pub residual_periods: u32,
 }
 
@@ -91,7 +91,7 @@ macro_rules! options {
             /// Greatest rate of the current set-point in force, A/s; 0 without one.
             #[serde(default)]
             pub slew_rate: f64,
-            /// Periods for which the currents may not follow the voltages; 0 where that is not watched.
+            /// Time-out of the residual watch, control periods; 0 where the currents are not watched.
             #[serde(default, rename = "residual_timeout")]
             pub residual_periods: u32,
             $($(#[$doc])* pub $field: $kind,)*
