@@ -357,28 +357,9 @@ fn a_stall_is_counted_under_demand_while_running() {
 }
 
 hexagen::controller! {
-    /// As `Guarded`, with the currents watched: 60 periods.
+    /// The currents are watched: 60 periods.
     pub Watched {
-        motor: {
-            pole_pairs: 4,
-            resistance: 135 mohm per_phase,
-            inductance: 0.22 mH per_phase,
-            winding: star,
-            back_emf: 0.1648 V/(rad/s) line_to_line peak,
-            emf_shape: trapezoidal,
-            rated_current: 20 A,
-            rated_torque: 3.3 Nm,
-            rated_speed: 2000 rpm,
-        },
-        inverter: {
-            bus_voltage: 48 V,
-            f_pwm: 20 kHz,
-            timer_clock: 72 MHz,
-            adc_bits: 12,
-            adc_range: 40 A,
-            calibration_samples: 16,
-            precharge: 200 us,
-        },
+        motor: "../targets/motors/trivedi-keshri-660w.toml",
         controller: pdcc { residual_timeout: 3 ms },
     }
 }
