@@ -462,7 +462,7 @@ impl Code {
                 "The line-to-line EMF at rated speed leaves less of the bus than rated current drops in two phases: rated torque ends below rated speed.",
                 "rated_speed = \"2500 rpm\"",
                 "rated_speed = \"2000 rpm\"",
-                "Nothing is wrong with the drive: it makes the torque that the message states. Raise the bus, or state the speed that is meant under load.",
+                "Nothing is wrong with the drive. The message goes by a current in two phases; `hexagen check` simulates the drive and prints its torque. Raise the bus, or state the speed that is meant under load.",
             ),
             Self::TripFarAbove => say(
                 "A fault makes as much current as the trip level before the drive stops.",

@@ -168,7 +168,7 @@ pub fn rating_beyond_bus(
             Code::RatingBeyondBus,
             &speed.location,
             format!(
-                "`{}`: {}: there the bus of {} leaves {} of {}, {} (the EMF is {} line to line, 2 R I {}); with the rated current it reaches {}; raise the bus to {}, or lower `{}`",
+                "`{}`: {}: there the bus of {} leaves {} of {} in two phases, {} (the EMF is {} line to line, 2 R I {}); with the rated current it reaches {}; raise the bus to {}, or lower `{}`",
                 speed.field,
                 speed.given,
                 bus.given,

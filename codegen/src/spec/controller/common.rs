@@ -6,7 +6,7 @@ use crate::spec::check::reader::Reader;
 use crate::spec::options::{Row, number, word};
 use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;
-use crate::spec::words::words;
+use crate::spec::words::{Words as _, words};
 
 words! {
     /// Source of the EMF.
@@ -477,7 +477,7 @@ fn read_residual_timeout(
     // A law that does not use the EMF refuses the option itself.
     let emf = emf?;
     if emf != EmfSource::Observer {
-        let other = format!("emf: {}", word(emf));
+        let other = format!("emf: {}", emf.word());
         errors.push(catalogue::option_without_effect(
             &timeout.part.location,
             OPTION,
