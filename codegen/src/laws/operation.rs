@@ -4,7 +4,9 @@ use super::current_loop::LoopDesign;
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, rpm, significant};
-use crate::spec::{BusSource, CurrentSensor, HallCapture, InverterSpec, SensedPhases, Spec};
+use crate::spec::{
+    BusCurrents, BusSource, CurrentSensor, HallCapture, InverterSpec, SensedPhases, Spec,
+};
 use std::f64::consts::FRAC_PI_3;
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: phase in, phase out.
@@ -196,6 +198,18 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             engineering(min, "V"),
             engineering(max, "V")
         ));
+    }
+    let BusCurrents { drawn, returned } = inverter.bus_currents;
+    for (most, what) in [
+        (drawn, "drawn from the supply"),
+        (returned, "returned to it"),
+    ] {
+        if let Some(most) = most {
+            lines.push(format!(
+                "The set-point is taken back where more than {} would be {what}, in the mean over some periods.",
+                engineering(most, "A")
+            ));
+        }
     }
     lines.push("What the supervisor cannot see: `hexagen::Supervisor`.".to_owned());
     lines
