@@ -276,14 +276,53 @@ impl Builder {
     /// A call without a motor; motors with the same output file; all errors of all specifications,
     /// before anything is written; else the first file that cannot be read or written.
     pub fn generate(self) -> Result<Vec<Written>, BuildError> {
-        if let Some((call, place)) = self.misplaced {
-            return Err(BuildError::Misplaced { call, place });
-        }
         let out_dir = self
             .out_dir
             .clone()
             .or_else(|| env::var_os("OUT_DIR").map(PathBuf::from));
         let out_dir = out_dir.ok_or(BuildError::NoOutDir)?;
+        let sources = self.sources()?;
+        if self.language == Language::C99 {
+            for (name, text) in RUNTIME {
+                write_whole(&out_dir.join(name), text)?;
+            }
+        }
+        for warning in sources.iter().flat_map(|(_, source)| &source.warnings) {
+            println!("cargo:warning={warning}");
+        }
+        sources
+            .into_iter()
+            .map(|(motor, source)| source.write(&out_dir, motor))
+            .collect()
+    }
+
+    /// Generates everything and returns the code, for snapshot tests; writes nothing, and needs no
+    /// `out_dir`. A line with its name stands before each of several files. The shared runtime of C99
+    /// is not part of it.
+    ///
+    /// # Errors
+    /// As [`generate`](Self::generate).
+    pub fn text(self) -> Result<String, BuildError> {
+        let sources = self.sources()?;
+        let files: Vec<_> = sources
+            .iter()
+            .flat_map(|(_, source)| &source.files)
+            .collect();
+        Ok(match files.as_slice() {
+            [(_, text)] => text.clone(),
+            files => files
+                .iter()
+                .map(|(name, text)| format!("// {}\n{text}", name.display()))
+                .collect::<Vec<_>>()
+                .join("\n"),
+        })
+    }
+
+    /// The files of all motors, with the motors.
+    fn sources(&self) -> Result<Vec<(String, Source)>, BuildError> {
+        if let Some((call, place)) = self.misplaced.clone() {
+            return Err(BuildError::Misplaced { call, place });
+        }
         let (mut sources, mut errors) = (vec![], vec![]);
         let motors = self.all_motors()?;
         if self.language == Language::Rust {
@@ -300,18 +339,7 @@ impl Builder {
             return Err(BuildError::Specification(errors));
         }
         check_written(&sources)?;
-        if self.language == Language::C99 {
-            for (name, text) in RUNTIME {
-                write_whole(&out_dir.join(name), text)?;
-            }
-        }
-        for warning in sources.iter().flat_map(|(_, source)| &source.warnings) {
-            println!("cargo:warning={warning}");
-        }
-        sources
-            .into_iter()
-            .map(|(motor, source)| source.write(&out_dir, motor))
-            .collect()
+        Ok(sources)
     }
 
     fn all_motors(&self) -> Result<Vec<Motor>, BuildError> {

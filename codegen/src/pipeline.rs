@@ -8,7 +8,7 @@ use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
 use crate::laws::current_loop::{LinearLoop, LoopDesign, SEARCHED};
 use crate::laws::{
-    Cause, Period, StableRange, accuracy_constants, interface, law, narrow_words,
+    Allowance, Cause, Period, StableRange, accuracy_constants, interface, law, narrow_words,
     trust_in_estimate, wide_words,
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
@@ -152,8 +152,27 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
             trust.filtered,
         ));
     }
+    warnings.extend(warn_of_watch(spec, origins));
     warnings.extend(warn_of_trip(spec, origins));
     warnings
+}
+
+/// Warns of a residual watch whose allowance at standstill and full current exceeds half the bus, about what a dead
+/// sensor or an open phase causes.
+fn warn_of_watch(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
+    const WATCH: &str = "controller.residual_timeout";
+    const MAX: &str = "inverter.max_current";
+    spec.controller.common().residual_periods?;
+    let (most, bus) = (spec.inverter.max_current, spec.inverter.v_bus);
+    let allowed = Allowance::of(spec).at(most, 0.0);
+    (allowed > 0.5 * bus * (1.0 + 1e-9)).then(|| {
+        catalogue::watch_is_blind(
+            origins.at(WATCH),
+            &origins.given(WATCH, ""),
+            &origins.given(MAX, &engineering(most, "A")),
+            [allowed, bus],
+        )
+    })
 }
 
 /// Ratio of a stated trip current to the largest set-point's peak above which a warning is given.

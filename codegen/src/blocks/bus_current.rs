@@ -38,7 +38,7 @@ impl<'b> BusCurrentLimit<'b> {
     /// Declares the words; none without a limit.
     pub fn new(l: &Lowering<'b>, delay: u32, set_point: &SetPointWords<'b>) -> Option<Self> {
         let limits = l.spec.inverter.bus_currents;
-        if limits == BusCurrents::default() {
+        if !limits.are_limited() {
             return None;
         }
         let doc =
@@ -84,10 +84,7 @@ impl<'b> BusCurrentLimit<'b> {
             largest,
             "The largest set-point, words of voltage.",
         );
-        named! {
-            let j_left = largest - self.withheld.read();
-        }
-        Allowed::of_either_way(j_left, others)
+        Allowed::of_either_way(largest - self.withheld.read(), others)
     }
 
     /// Words of twice the bus current per ampere.

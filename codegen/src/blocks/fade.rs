@@ -28,19 +28,17 @@ pub struct Allowed<'b> {
 impl<'b> Allowed<'b> {
     /// Limits of either sign, within others.
     pub fn of_either_way(most: Expr<'b>, others: Option<Self>) -> Self {
-        let Some(Self { least, most: other }) = others else {
-            named! {
-                let least = -most;
-            }
-            return Self { least, most };
+        let (least, most) = match others {
+            None => (-most, most),
+            Some(others) => (others.least.max(-most), others.most.min(most)),
         };
         named! {
-            let j_least = least.max(-most);
-            let j_most = other.min(most);
+            let j_bus_least = least;
+            let j_bus_most = most;
         }
         Self {
-            least: j_least,
-            most: j_most,
+            least: j_bus_least,
+            most: j_bus_most,
         }
     }
 

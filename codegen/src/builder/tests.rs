@@ -214,3 +214,23 @@ fn a_board_of_the_builder_replaces_what_the_motor_file_says() {
             .contains("stands before the first motor")
     );
 }
+
+#[test]
+fn the_text_is_that_of_the_files_and_nothing_is_written() {
+    let folder = std::env::temp_dir().join(format!("hexagen-text-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    fs::write(folder.join("hub.toml"), include_str!("../example.toml")).expect("a motor file");
+    let builder = || Builder::new().root(&folder).motor("hub.toml");
+    let text = builder().text();
+    let of_c = builder().c99().text();
+    let found = fs::read_dir(&folder).expect("the folder").count();
+    let written = builder().out_dir(&folder).generate();
+    let file = written.map(|written| fs::read_to_string(&written[0].files[0]));
+    let whole = file.expect("is generated").expect("is written");
+    fs::remove_dir_all(&folder).expect("the folder is ours");
+    assert_eq!(found, 1);
+    assert_eq!(text.expect("is generated"), whole);
+    let of_c = of_c.expect("is generated");
+    let heads = of_c.lines().filter(|line| line.starts_with("// "));
+    assert_eq!(heads.count(), 2, "{of_c}");
+}

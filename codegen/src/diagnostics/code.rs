@@ -167,6 +167,8 @@ codes! {
     SwingAboveTrip = 611,
     /// A third current sensor is not read.
     UnreadSensor = 612,
+    /// The residual watch allows for more than faults cause.
+    WatchIsBlind = 613,
     /// An internal error of the generator.
     Internal = 901,
 }

@@ -482,6 +482,12 @@ impl Code {
                 "sensed_phases = \"ab\"",
                 "Name two phases, or leave it: nothing is wrong.",
             ),
+            Self::WatchIsBlind => say(
+                "residual_timeout allows for a resistance of twice the stated one, and for dead time. Where that takes half the bus at max_current, a dead sensor or an open phase causes no more.",
+                "resistance = \"700 mohm per_phase\"\nrated_speed = \"500 rpm\"\nkind = \"pdcc\"\nresidual_timeout = \"5 ms\"",
+                "resistance = \"700 mohm per_phase\"\nrated_speed = \"500 rpm\"\nmax_current = \"10 A\"\nkind = \"pdcc\"\nresidual_timeout = \"5 ms\"",
+                "Lower max_current, or leave out residual_timeout: at full current it sees nothing.",
+            ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",
                 "any specification",

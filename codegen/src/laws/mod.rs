@@ -21,7 +21,7 @@ mod whole_vectors;
 mod word_choice;
 
 pub use accuracy::accuracy_constants;
-pub use current_loop::StableRange;
+pub use current_loop::{Allowance, StableRange};
 pub use interface::interface;
 pub use law::{Cause, Description, Law, Period, Start, law};
 pub use trust::{Trust, trust_in_estimate};

@@ -1,6 +1,6 @@
 //! The type's documentation of operation: signs and wiring, start-up, faults.
 
-use super::current_loop::LoopDesign;
+use super::current_loop::{Allowance, LoopDesign};
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, rpm, significant};
@@ -136,6 +136,13 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     if let Some(periods) = spec.controller.common().residual_periods {
         lines.push(format!(
             "So do {periods} periods more with currents that do not follow the voltages than with ones that do."
+        ));
+        let allowance = Allowance::of(spec);
+        let rated = spec.motor.rated_speed * f64::from(spec.motor.pole_pairs);
+        let [still, turning] = [0.0, rated]
+            .map(|omega_e| engineering(allowance.at(inverter.max_current, omega_e), "V"));
+        lines.push(format!(
+            "They may be off by {still} at standstill and by {turning} at rated speed, with `max_current`: a fault of less is not seen."
         ));
     }
     lines.push(match inverter.stall_periods {

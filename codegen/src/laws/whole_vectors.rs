@@ -293,7 +293,13 @@ impl<'b> Vector<'_, 'b> {
                     _ => OFF,
                 };
                 let table = over_vectors(l, self.numbers, name, &doc, state);
-                table.of_legs().at(self.number)
+                // A bus current is reckoned with numbers.
+                let table = if l.spec.inverter.bus_currents.are_limited() {
+                    table
+                } else {
+                    table.of_legs()
+                };
+                table.at(self.number)
             });
         }
         Command {

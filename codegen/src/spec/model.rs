@@ -257,6 +257,13 @@ pub struct BusCurrents {
     pub returned: Option<f64>,
 }
 
+impl BusCurrents {
+    /// Whether one of the currents has a limit.
+    pub fn are_limited(self) -> bool {
+        self != Self::default()
+    }
+}
+
 /// Bus voltages between which the largest set-point falls in proportion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fade {

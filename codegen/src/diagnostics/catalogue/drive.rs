@@ -482,6 +482,25 @@ pub fn unread_sensor(at: &Location) -> Diagnostic {
     )
 }
 
+/// The residual watch allows for `allowed` volts at standstill with the largest set-point, as written or
+/// by default; `bus`, volt.
+pub fn watch_is_blind(
+    at: &Location,
+    given: &str,
+    max: &str,
+    [allowed, bus]: [f64; 2],
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::WatchIsBlind,
+        at,
+        format!(
+            "`residual_timeout`: {given}: with `max_current` of {max} the watch allows for {} of deviation at standstill, more than half the bus of {}, and notices little; lower `max_current`, or leave the watch out",
+            engineering(allowed, "V"),
+            engineering(bus, "V"),
+        ),
+    )
+}
+
 /// The timer period, `counts`, is outside 100 to 65535; `clock`, `f_pwm` in hertz.
 pub fn timer_period(
     timer: &Part,

@@ -13,7 +13,7 @@ mod words;
 
 pub use design::LoopDesign;
 pub use held::{Held, LeftOver};
-pub use residual::RESIDUAL_COUNT;
+pub use residual::{Allowance, RESIDUAL_COUNT};
 pub use stability::{LinearLoop, SEARCHED, SeenEmf, StableRange};
 pub use words::{EmfUse, Needs, Words};
 

@@ -5,6 +5,7 @@ use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{Lowering, Rotor};
 use crate::diagnostics::{engineering, significant};
 use crate::ir::{Coefficient, Expr, Interval, Memory, Phases, named};
+use crate::spec::Spec;
 use std::f64::consts::TAU;
 
 /// The state word.
@@ -29,6 +30,47 @@ const UNSEEN_EMF: f64 = 1.5;
 /// Dead time that is not stated, second: 1 us, with a margin.
 const DEAD_TIME: f64 = 1.5e-6;
 
+/// The residual that wrong motor data, bus, dead time and Hall sensors may cause.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowance {
+    /// Whatever the current and the speed, volt.
+    always: f64,
+    /// Volt per ampere of the set-point.
+    per_ampere: f64,
+    /// Volt per electrical rad/s.
+    per_speed: f64,
+    /// In place of the part by speed while the angle is unknown, volt.
+    unseen: f64,
+}
+
+impl Allowance {
+    /// Of a drive.
+    pub fn of(spec: &Spec) -> Self {
+        let (motor, inverter) = (&spec.motor, &spec.inverter);
+        let pole_pairs = f64::from(motor.pole_pairs);
+        let unseen_speed = match spec.start_periods() {
+            0 => inverter.maximum_speed,
+            periods => {
+                let sectors = TAU / 3.0 * motor.widest_sector();
+                sectors / (f64::from(periods) * inverter.t_s * pole_pairs)
+            }
+        };
+        let flux = motor.emf_constant / pole_pairs;
+        Self {
+            // The mean zero-sum voltage that a dead time takes at most.
+            always: 4.0 / 3.0 * inverter.v_bus * DEAD_TIME / inverter.pwm_period(),
+            per_ampere: RESISTANCE * motor.resistance,
+            per_speed: EMF * flux + REACTANCE * motor.inductance * inverter.max_current,
+            unseen: UNSEEN_EMF * motor.emf_constant * unseen_speed,
+        }
+    }
+
+    /// At a set-point, ampere, and a speed, electrical rad/s, volt.
+    pub fn at(self, current: f64, omega_e: f64) -> f64 {
+        self.always + self.per_ampere * current + self.per_speed * omega_e
+    }
+}
+
 /// Periods in which the currents did not follow the voltages.
 #[derive(Clone, Copy, Debug)]
 pub struct ResidualWatch<'b> {
@@ -48,60 +90,44 @@ impl<'b> ResidualWatch<'b> {
         }
     }
 
-    /// The residual that wrong motor data, bus, dead time and Hall sensors may cause, by set-point and
-    /// speed; added to the open stage.
+    /// The residual allowed at a set-point and a speed; added to the open stage.
     fn allowed(
         l: &Lowering<'b>,
+        allowance: &Allowance,
         [k_current, k_speed]: [Coefficient; 2],
         rotor: &Rotor<'b>,
         j: Expr<'b>,
     ) -> Expr<'b> {
-        let inverter = &l.spec.inverter;
-        // Mean zero-sum voltage that a dead time takes at most.
-        let dead = 4.0 / 3.0 * inverter.v_bus * DEAD_TIME / inverter.pwm_period();
-        let doc = format!("Residual allowed always, {}.", engineering(dead, "V"));
-        let always = l.number("residual_least", l.volts_word(dead), &doc);
+        let Allowance { always, unseen, .. } = *allowance;
+        let doc = format!("Residual allowed always, {}.", engineering(always, "V"));
+        let always = l.number("residual_least", l.volts_word(always), &doc);
         let by_speed = k_speed * rotor.step_angle.abs();
-        let unseen = Self::unseen(l);
+        let doc = format!(
+            "Residual allowed while the angle is unknown, {}.",
+            engineering(unseen, "V")
+        );
+        let unseen = l.number("residual_unseen", l.volts_word(unseen), &doc);
         named! {
             let residual_by_speed = rotor.tracking.choose(by_speed, unseen);
         }
         k_current * j.abs() + residual_by_speed + always
     }
 
-    /// Residual of an EMF while the angle is unknown.
-    fn unseen(l: &Lowering<'b>) -> Expr<'b> {
-        let (motor, inverter) = (&l.spec.motor, &l.spec.inverter);
-        let pole_pairs = f64::from(motor.pole_pairs);
-        let speed = match l.spec.start_periods() {
-            0 => inverter.maximum_speed,
-            periods => {
-                let sectors = TAU / 3.0 * motor.widest_sector();
-                sectors / (f64::from(periods) * inverter.t_s * pole_pairs)
-            }
-        };
-        let volts = UNSEEN_EMF * motor.emf_constant * speed;
-        let doc = format!(
-            "Residual allowed while the angle is unknown, {}.",
-            engineering(volts, "V")
-        );
-        l.number("residual_unseen", l.volts_word(volts), &doc)
-    }
-
     /// Coefficients of the allowed residual: by set-point, and by the angle of a period.
-    fn coefficients(&self, l: &Lowering<'b>) -> [Coefficient; 2] {
-        let (motor, inverter) = (&l.spec.motor, &l.spec.inverter);
-        let resistance = RESISTANCE * motor.resistance;
+    fn coefficients(&self, l: &Lowering<'b>, allowance: &Allowance) -> [Coefficient; 2] {
+        let Allowance {
+            per_ampere,
+            per_speed,
+            ..
+        } = *allowance;
         let by_current = l.coefficient(
             "k_residual_j",
-            resistance / self.gain,
+            per_ampere / self.gain,
             32,
             "Residual allowed per set-point.",
-            &format!("1.6 R/K = {}", significant(resistance / self.gain)),
+            &format!("1.6 R/K = {}", significant(per_ampere / self.gain)),
         );
-        let flux = motor.emf_constant / f64::from(motor.pole_pairs);
-        let per_speed = EMF * flux + REACTANCE * motor.inductance * inverter.max_current;
-        let per_angle = per_speed * TAU / 32_f64.exp2() / inverter.t_s;
+        let per_angle = per_speed * TAU / 32_f64.exp2() / l.spec.inverter.t_s;
         let by_speed = l.scaled_coefficient(
             "k_residual_w",
             per_angle * l.scale.voltage(),
@@ -125,7 +151,8 @@ impl<'b> ResidualWatch<'b> {
         rotor: &Rotor<'b>,
         j: Expr<'b>,
     ) -> (Memory<'b>, Expr<'b>) {
-        let coefficients = self.coefficients(l);
+        let allowance = Allowance::of(l.spec);
+        let coefficients = self.coefficients(l, &allowance);
         l.b.stage(
             "watch_residual",
             &[
@@ -137,7 +164,7 @@ impl<'b> ResidualWatch<'b> {
         let count = self.count.read();
         let most = count.interval().high as i32;
         named! {
-            let residual_allowed = Self::allowed(l, coefficients, rotor, j);
+            let residual_allowed = Self::allowed(l, &allowance, coefficients, rotor, j);
             let residual_learnt = q.abs().max(d.abs() << 1);
             let residual_now = residual.a().abs().max(residual.b().abs());
             let residual_seen = rotor.tracking.choose(residual_learnt, residual_now - residual_learnt);

@@ -5,6 +5,7 @@ use crate::cli::{
     self, Failure, RunArguments, parse_rpm, print_json, print_text, spinner, warn, write_file,
 };
 use clap::Args;
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
 };
@@ -200,12 +201,51 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             100.0 * SETTLED
         ));
     }
+    if let Some(text) = beyond_envelope(&drive, options, &outcome) {
+        warn(&text);
+    }
     if options.run.json {
         print_json(&outcome)?;
     } else {
         print_table(&outcome)?;
     }
     Failure::of_trip(outcome.tripped)
+}
+
+/// Share of saturated periods above which the bus is what limits the torque, percent.
+const SATURATED: f64 = 10.0;
+
+/// Torque over the demand below which the demand is not met.
+const MET: f64 = 0.98;
+
+/// What a speed or torque beyond the drive's means; none within, and none with a speed loop.
+fn beyond_envelope(drive: &Prepared, options: &Options, outcome: &Outcome) -> Option<String> {
+    if options.speed_set.is_some() {
+        return None;
+    }
+    let rpm = options.rpm;
+    let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
+    if rpm.abs() > most * (1.0 + 1e-9) {
+        return Some(format!(
+            "--rpm {rpm}: beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor"
+        ));
+    }
+    let greatest = drive.spec.inverter.max_current * drive.spec.torque_constant();
+    let demand = outcome.torque_nm.clamp(-greatest, greatest);
+    let (torque, saturated) = (
+        outcome.figures.mean_torque_nm?,
+        outcome.figures.saturated_pct?,
+    );
+    let is_short = torque * demand.signum() < MET * demand.abs();
+    (is_short && saturated > SATURATED).then(|| {
+        format!(
+            "{} Nm at {rpm} rpm: the bus of {} drives only {} Nm there; `hexagen limit {}` prints up to which speed the torque lasts",
+            significant(demand, 4),
+            engineering(drive.spec.inverter.v_bus, "V"),
+            significant(torque, 4),
+            outcome.ran.motor
+        )
+    })
 }
 
 fn print_table(outcome: &Outcome) -> Result<(), Failure> {

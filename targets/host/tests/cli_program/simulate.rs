@@ -601,3 +601,22 @@ fn limit_tells_what_the_window_of_low_side_sensors_costs() {
     let result = run(["limit", PAPER, "--start-angle", "0.1", "--json"]).json();
     assert!(result["without_window"].is_null(), "{result}");
 }
+
+#[test]
+fn a_demand_beyond_the_envelope_is_a_warning() {
+    let warned = |rpm: &str| {
+        let output = run(["simulate", "hoverboard-hub", "--rpm", rpm]);
+        output.stderr
+    };
+    let short = warned("560");
+    assert!(
+        short.contains("5.968 Nm at 560 rpm: the bus of 36 V drives only 3."),
+        "{short}"
+    );
+    let fast = warned("900");
+    assert!(
+        fast.contains("--rpm 900: beyond maximum_speed = 600 rpm"),
+        "{fast}"
+    );
+    assert_eq!(warned("300"), "");
+}
