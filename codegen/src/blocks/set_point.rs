@@ -1,7 +1,7 @@
 //! Set-point words and the functions that set them (semantics, "Set-point words").
 
 use super::number::round_half_up;
-use super::speed::{SpeedWords, speed_word};
+use super::rotor::speed_word;
 use super::{Bus, Lowering, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
@@ -24,6 +24,13 @@ pub struct SetPointWords<'b> {
     pub top: i64,
     /// Words of the speed loop; with a speed loop only.
     pub speed: Option<SpeedWords<'b>>,
+}
+
+/// Words of a speed loop.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedWords<'b> {
+    /// Speed set-point, in words of `omega`.
+    pub reference: Param<'b>,
 }
 
 /// Words of a measured bus.

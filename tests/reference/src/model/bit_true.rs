@@ -16,6 +16,7 @@ mod parts;
 mod physical;
 mod residual;
 mod rotor;
+mod sectors;
 mod slew;
 mod speed;
 mod state;
