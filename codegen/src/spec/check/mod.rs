@@ -15,6 +15,7 @@ mod other_names;
 pub(crate) mod reader;
 mod relations;
 mod sensing;
+mod sensing_window;
 
 pub use origins::{Origin, Origins};
 
@@ -52,7 +53,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         // Torque and EMF in one wrong basis are one mistake.
         relations::check_bus(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
     }
-    sensing::check(
+    sensing_window::check(
         &inverter_reader,
         &inverter,
         (controller.as_ref(), &ast.controller),
