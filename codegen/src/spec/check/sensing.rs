@@ -1,8 +1,8 @@
 //! The current sensors: where they are, and what a count of each is worth.
 
-use super::reader::Reader;
 use crate::diagnostics::catalogue;
 use crate::diagnostics::{Collector, Diagnostic};
+use crate::spec::reader::Reader;
 use crate::spec::sensing::SensingTimes;
 use crate::spec::{CurrentSensing, SensedPhases};
 

@@ -1,9 +1,9 @@
 //! Sensors and pulses together: when a leg can be read.
 
 use super::inverter::Inverter;
-use super::reader::Reader;
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::ast::Section;
+use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, CurrentSensing};
 
 /// Least share of the period that a leg may be high: below it not even the zero voltage of centred pulses, half the

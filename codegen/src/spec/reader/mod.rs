@@ -1,11 +1,12 @@
 //! Typed access to the fields of a section: checks single fields, and returns values in SI units.
 
-use super::other_names;
+mod other_names;
+
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Location, engineering, percent, rpm, significant};
 use crate::spec::ast::{Basis, Field, Number, Section, Value};
+use crate::spec::field_rule::FieldRule;
 use crate::spec::rule::{Kind, Preset, Rule};
-use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::value::{parse_value, plain_number};
 use crate::spec::words::Words;
@@ -83,16 +84,11 @@ impl<'a> Reader<'a> {
                 if let Value::Malformed(error) = &field.value {
                     errors.push((**error).clone());
                 }
-            } else if let Some(right) = schema::section_of(&field.name) {
-                errors.push(catalogue::misplaced_field(
-                    at,
-                    self.name,
-                    &field.name,
-                    right,
-                ));
+            } else if elsewhere(field, errors) {
+                // Reported.
             } else if let Some(remedy) = self.remedy(field) {
                 errors.push(catalogue::other_name(at, self.name, &field.name, &remedy));
-            } else if !elsewhere(field, errors) {
+            } else {
                 errors.push(catalogue::unknown_field(at, self.name, &field.name, &known));
             }
         }
@@ -106,7 +102,7 @@ impl<'a> Reader<'a> {
                     &self.at,
                     self.name,
                     name,
-                    &schema::examples(name, &[]),
+                    &self.field_rule(name).examples(&[]),
                 ));
             }
         }
@@ -131,7 +127,7 @@ impl<'a> Reader<'a> {
         if names.iter().all(|name| self.may_lack(name)) {
             let fields: Vec<(&str, &str)> = names
                 .iter()
-                .map(|name| (*name, schema::example(name)))
+                .map(|name| (*name, self.field_rule(name).example()))
                 .collect();
             errors.push(catalogue::missing_alternative(&self.at, self.name, &fields));
         }
@@ -194,8 +190,9 @@ impl<'a> Reader<'a> {
         let values = match &field.value {
             Value::List(values) => values.clone(),
             Value::Integers(numbers) => {
-                let number =
-                    |number: &i64| plain_number(name, &number.to_string(), &field.location);
+                let number = |number: &i64| {
+                    plain_number(self.field_rule(name), &number.to_string(), &field.location)
+                };
                 numbers.iter().map(number).collect()
             }
             value => vec![value.clone()],
@@ -222,10 +219,17 @@ impl<'a> Reader<'a> {
         read.into_iter().collect()
     }
 
+    fn field_rule<'n>(&self, name: &'n str) -> FieldRule<'n> {
+        let rule = self.rules.iter().find(|rule| rule.name == name);
+        FieldRule {
+            name,
+            rule: rule.copied(),
+        }
+    }
+
     fn rule(&self, name: &str) -> Option<(&'a Field, &'static Rule)> {
         let field = self.field(name)?;
-        let rule = self.rules.iter().find(|rule| rule.name == name)?;
-        Some((field, *rule))
+        Some((field, self.field_rule(name).rule?))
     }
 
     /// The number of a field that takes one.
@@ -256,11 +260,52 @@ impl<'a> Reader<'a> {
             Value::Malformed(_) => None,
             other => {
                 let given = other.to_string();
-                let (at, examples) = (&field.location, schema::examples(name, &[]));
+                let (at, examples) = (&field.location, self.field_rule(name).examples(&[]));
                 errors.push(catalogue::wrong_kind(at, name, &given, wanted, &examples));
                 None
             }
         }
+    }
+
+    /// Reports a value outside its limits; returns whether it is inside.
+    fn within(
+        &self,
+        errors: &mut Collector,
+        given: &Given,
+        [low, high]: [f64; 2],
+        [low_text, high_text]: [String; 2],
+    ) -> bool {
+        // A decimal limit and the same value in another unit may differ in the last bit.
+        let slack = 1e-9;
+        let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
+        if low >= 0.0 && (given.si < 0.0 || (given.si == 0.0 && low > 0.0)) {
+            // Limits that only exclude zero are not shown.
+            let bounded = high < f64::MAX;
+            let error = if low > 0.0 && bounded {
+                catalogue::not_positive(at, name, text, &low_text, &high_text)
+            } else if bounded {
+                catalogue::out_of_range(at, name, text, &low_text, &high_text)
+            } else {
+                catalogue::not_above_zero(
+                    at,
+                    name,
+                    text,
+                    &self.field_rule(name).examples(given.basis),
+                )
+            };
+            errors.push(error);
+            return false;
+        }
+        let inside = given.si >= low - slack * low.abs() && given.si <= high * (1.0 + slack);
+        if !inside {
+            // Only a number with a unit can have a wrong one.
+            let error = match given.dimension {
+                Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
+                None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
+            };
+            errors.push(error);
+        }
+        inside
     }
 
     /// A number with a unit, in SI, within its limits.
@@ -277,7 +322,7 @@ impl<'a> Reader<'a> {
         let (at, text, examples) = (
             &given.part.location,
             &given.part.given,
-            schema::examples(name, given.basis),
+            self.field_rule(name).examples(given.basis),
         );
         let Some(dimension) = given.dimension else {
             errors.push(catalogue::missing_unit(at, name, text, &examples));
@@ -290,7 +335,7 @@ impl<'a> Reader<'a> {
             ));
             return None;
         }
-        within(
+        self.within(
             errors,
             &given,
             [low, high],
@@ -316,7 +361,7 @@ impl<'a> Reader<'a> {
             && !matches!(dimension, Dimension::Time | Dimension::Periods)
         {
             let wanted = "a time or a number of periods";
-            let (got, examples) = (dimension.name(), schema::examples(name, &[]));
+            let (got, examples) = (dimension.name(), self.field_rule(name).examples(&[]));
             errors.push(catalogue::wrong_dimension(
                 at, name, text, got, wanted, &examples,
             ));
@@ -338,7 +383,7 @@ impl<'a> Reader<'a> {
             return None;
         };
         (refuse_unit(errors, &given)
-            && within(
+            && self.within(
                 errors,
                 &given,
                 [low, high],
@@ -357,7 +402,7 @@ impl<'a> Reader<'a> {
             let (at, text, examples) = (
                 &given.part.location,
                 &given.part.given,
-                schema::examples(name, &[]),
+                self.field_rule(name).examples(&[]),
             );
             errors.push(catalogue::wrong_kind(
                 at,
@@ -372,7 +417,7 @@ impl<'a> Reader<'a> {
             Kind::OneOf(numbers) => is_one_of(errors, &given, numbers),
             Kind::Integer { low, high } => {
                 let limits = [f64::from(low), f64::from(high)];
-                within(errors, &given, limits, [low.to_string(), high.to_string()])
+                self.within(errors, &given, limits, [low.to_string(), high.to_string()])
             }
             _ => false,
         };
@@ -429,8 +474,7 @@ impl<'a> Reader<'a> {
     }
 
     fn preset(&self, name: &str) -> Option<Preset> {
-        let rule = self.rules.iter().find(|rule| rule.name == name)?;
-        Some(rule.preset)
+        Some(self.field_rule(name).rule?.preset)
     }
 
     /// The default of a number, in SI units; NaN where the table has none (excluded by a test).
@@ -438,7 +482,7 @@ impl<'a> Reader<'a> {
         let Some(Preset::Value(text)) = self.preset(name) else {
             return f64::NAN;
         };
-        match parse_value(name, text, &self.at) {
+        match parse_value(self.field_rule(name), text, &self.at) {
             Value::Number(number) => number.si(),
             _ => f64::NAN,
         }
@@ -492,7 +536,7 @@ impl<'a> Reader<'a> {
             Value::Malformed(_) => None,
             _ => {
                 let wanted = "a list of whole numbers";
-                let (at, examples) = (&part.location, schema::examples(name, &[]));
+                let (at, examples) = (&part.location, self.field_rule(name).examples(&[]));
                 errors.push(catalogue::wrong_kind(
                     at,
                     name,
@@ -558,41 +602,6 @@ fn is_one_of(errors: &mut Collector, given: &Given, numbers: &[u32]) -> bool {
         ));
     }
     found
-}
-
-/// Reports a value outside its limits; returns whether it is inside.
-fn within(
-    errors: &mut Collector,
-    given: &Given,
-    [low, high]: [f64; 2],
-    [low_text, high_text]: [String; 2],
-) -> bool {
-    // A decimal limit and the same value in another unit may differ in the last bit.
-    let slack = 1e-9;
-    let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
-    if low >= 0.0 && (given.si < 0.0 || (given.si == 0.0 && low > 0.0)) {
-        // Limits that only exclude zero are not shown.
-        let bounded = high < f64::MAX;
-        let error = if low > 0.0 && bounded {
-            catalogue::not_positive(at, name, text, &low_text, &high_text)
-        } else if bounded {
-            catalogue::out_of_range(at, name, text, &low_text, &high_text)
-        } else {
-            catalogue::not_above_zero(at, name, text, &schema::examples(name, given.basis))
-        };
-        errors.push(error);
-        return false;
-    }
-    let inside = given.si >= low - slack * low.abs() && given.si <= high * (1.0 + slack);
-    if !inside {
-        // Only a number with a unit can have a wrong one.
-        let error = match given.dimension {
-            Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
-            None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
-        };
-        errors.push(error);
-    }
-    inside
 }
 
 /// A limit for messages, in the field's usual unit.
