@@ -322,16 +322,7 @@ impl<'b> BusWords<'b> {
         else {
             return;
         };
-        let k_bus = l.scaled_coefficient(
-            "k_bus",
-            gain * l.scale.voltage(),
-            32,
-            [
-                "Bus-voltage ADC count to words of voltage.",
-                &format!("u = {} per count", engineering(gain, "V")),
-            ],
-            ["u/w 2^f_v", "words of voltage per count"],
-        );
+        let k_bus = words_per_count(l, gain);
         let [doc, stage_doc] = match self.ratio {
             Some(_) => [
                 "Words of the bus voltage from its ADC count.",
@@ -372,6 +363,20 @@ impl<'b> BusWords<'b> {
             }
         });
     }
+}
+
+/// Words of voltage per count of the bus voltage's ADC, of `gain` volt.
+fn words_per_count(l: &Lowering<'_>, gain: f64) -> Coefficient {
+    l.scaled_coefficient(
+        "k_bus",
+        gain * l.scale.voltage(),
+        32,
+        [
+            "Bus-voltage ADC count to words of voltage.",
+            &format!("u = {} per count", engineering(gain, "V")),
+        ],
+        ["u/w 2^f_v", "words of voltage per count"],
+    )
 }
 
 /// Nominal over measured bus voltage, for a measured one of at least `min`.
