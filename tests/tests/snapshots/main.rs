@@ -11,12 +11,14 @@
 
 mod drives;
 mod extracts;
+mod items;
 mod prose;
 mod shape;
 mod units;
 
 use drives::{Drive, TEXTS};
 use extracts::{Shown, shapes_of_extracts};
+use items::{Earlier, without_names};
 use shape::Shape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -29,7 +31,7 @@ use units::{Unit, units};
 const FOLDER: &str = "kept";
 
 /// Controllers whose Rust is kept in full.
-const IN_FULL_IN_RUST: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+const IN_FULL_IN_RUST: [&str; 4] = ["pdcc", "fcs-mpc", "phcc", "pi-pwm"];
 
 /// Controllers whose C is kept in full.
 const IN_FULL_IN_C: [&str; 2] = ["pdcc", "fcs-mpc"];
@@ -48,16 +50,20 @@ fn snapshots() -> BTreeMap<String, String> {
     let mut snapshots = BTreeMap::new();
     for kind in TEXTS {
         let [defaults, variants, others] = &*DRIVES;
-        let is_full = |drive: &&Drive| match kind {
-            "rust" => IN_FULL_IN_RUST.contains(&&*drive.name),
-            "c99" => IN_FULL_IN_C.contains(&&*drive.name),
-            _ => false,
+        let in_full: &[&str] = match kind {
+            "rust" => &IN_FULL_IN_RUST,
+            "c99" => &IN_FULL_IN_C,
+            _ => &[],
         };
+        let in_full = in_full
+            .iter()
+            .filter_map(|name| defaults.iter().find(|drive| drive.name == *name));
         let mut shown = Shown::default();
-        for drive in defaults.iter().filter(is_full) {
+        let mut earlier = Earlier::default();
+        for drive in in_full {
             shown.add(&units(kind, drive.text(kind)));
             let name = format!("{}.{kind}", drive.name);
-            snapshots.insert(name, drive.text(kind).to_owned());
+            snapshots.insert(name, earlier.differences(&drive.name, drive.text(kind)));
         }
         let mut extracts = String::new();
         for drive in defaults.iter().chain(variants) {
@@ -146,7 +152,8 @@ fn every_line_of_every_drive_is_in_a_snapshot() {
                 if name.starts_with("variants.") || name.starts_with("others.") {
                     shapes_of_extracts(kind, text)
                 } else {
-                    units(kind, text).iter().flat_map(Unit::shapes).collect()
+                    let units = units(kind, &without_names(text));
+                    units.iter().flat_map(Unit::shapes).collect()
                 }
             })
             .collect();

@@ -41,6 +41,11 @@ pub fn units(kind: &str, text: &str) -> Vec<Unit> {
     }
 }
 
+/// Items of a text of code as they were emitted, comments included.
+pub fn items(text: &str) -> Vec<Unit> {
+    of_code(text)
+}
+
 fn without_comments(code: &str) -> String {
     let mut reader = Reader::default();
     let code = code
