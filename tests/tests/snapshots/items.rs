@@ -1,8 +1,8 @@
 //! Texts of code in which an item that an earlier drive has letter for letter is a name.
 
+use crate::extracts::abridged;
 use crate::units::{Unit, items};
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// Begins a line of names.
 const SAME: &str = "// As in ";
@@ -15,10 +15,11 @@ const WIDTH: usize = 100;
 pub struct Earlier(BTreeMap<String, String>);
 
 impl Earlier {
-    /// A drive's text; whole for the first one, for others in the order of its items.
-    pub fn differences(&mut self, drive: &str, text: &str) -> String {
+    /// A drive's text: whole for the first one, for others its items in their order, of tables the
+    /// first row of each shape.
+    pub fn differences(&mut self, drive: &str, kind: &str, text: &str) -> String {
         let is_first = self.0.is_empty();
-        let items = items(text);
+        let items = items(kind, text);
         let differences = self.of_items(&items);
         for item in items {
             let first = self.0.entry(item.text);
@@ -38,9 +39,7 @@ impl Earlier {
             if let Some(drive) = source(&run[0]) {
                 text += &names(drive, run);
             } else {
-                for item in run {
-                    writeln!(text, "{}", item.text).expect("a string takes all");
-                }
+                text.extend(run.iter().map(abridged));
             }
         }
         text
