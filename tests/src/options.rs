@@ -56,6 +56,9 @@ const BUS_RANGE: &str = "\"bus range\"";
 
 /// Placeholder of a voltage of a quarter of the motor's bus.
 const FADE: &str = "\"fade\"";
+/// A tenth and a twenty-fifth of the ADC's range, which every motor draws and returns more than.
+const DRAWN: &str = "\"drawn\"";
+const RETURNED: &str = "\"returned\"";
 
 /// Values rejected by every drive of a kind: kind, option, value.
 const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
@@ -314,6 +317,20 @@ const LOOSE: &[Row] = &[
             ),
         ],
     ),
+    (
+        "supply",
+        &[
+            ("default", &[]),
+            ("limited", &[("inverter", "bus_current_limit", DRAWN)]),
+            (
+                "limited_both_ways",
+                &[
+                    ("inverter", "bus_current_limit", DRAWN),
+                    ("inverter", "return_current_limit", RETURNED),
+                ],
+            ),
+        ],
+    ),
 ];
 
 /// A drive of the library.
@@ -545,7 +562,7 @@ impl Kind {
     /// The motor's file with this controller and its options, and another type name.
     ///
     /// # Panics
-    /// If the motor file is no TOML or has no bus voltage.
+    /// If the motor file is no TOML, or has no bus voltage or ADC range.
     pub fn drive_toml(&self, motor: &Motor, choice: &[usize], type_name: Option<&str>) -> String {
         let mut document: DocumentMut = motor.text.parse().expect("a TOML file");
         let text = |value: &str| -> Item {
@@ -554,8 +571,10 @@ impl Kind {
                 .expect("a TOML value")["x"]
                 .clone()
         };
-        let bus = document_bus(&document);
+        let [bus, range] = [("bus_voltage", 'V'), ("adc_range", 'A')]
+            .map(|(field, unit)| of_inverter(&document, field, unit));
         let volts = |share: f64| text(&format!("\"{} V\"", bus * share));
+        let amperes = |share: f64| text(&format!("\"{} A\"", range * share));
         document["controller"] = Item::Table(Table::new());
         document["controller"]["kind"] = text(&format!("\"{}\"", self.name));
         for (axis, &value) in self.axes.iter().zip(choice) {
@@ -563,6 +582,8 @@ impl Kind {
                 document[*section][*field] = match setting.as_str() {
                     BUS_RANGE => volts(1.6),
                     FADE => volts(0.25),
+                    DRAWN => amperes(0.1),
+                    RETURNED => amperes(0.04),
                     _ => text(setting),
                 };
             }
@@ -593,21 +614,21 @@ fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
-/// The bus voltage of a motor file, volt.
-fn document_bus(document: &DocumentMut) -> f64 {
-    let stated = document
-        .get("inverter")
-        .and_then(|table| table.get("bus_voltage"));
+/// A number of the inverter of a motor file, in this unit.
+fn of_inverter(document: &DocumentMut, field: &str, unit: char) -> f64 {
+    let stated = document.get("inverter").and_then(|table| table.get(field));
     let assumed = || {
         let table = document.get("assumed")?.get("inverter")?;
-        table.get("bus_voltage")?.get("value")
+        table.get(field)?.get("value")
     };
     let text = stated
         .or_else(assumed)
         .and_then(Item::as_str)
-        .expect("a bus voltage");
-    let number = text.trim_end_matches('V').trim();
-    number.parse().expect("a bus voltage in volt")
+        .unwrap_or_else(|| panic!("no {field}"));
+    let number = text.trim_end_matches(unit).trim();
+    number
+        .parse()
+        .unwrap_or_else(|_| panic!("{field}: {text} is not in {unit}"))
 }
 
 /// The generator's result for a TOML text.

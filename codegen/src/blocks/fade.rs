@@ -26,6 +26,24 @@ pub struct Allowed<'b> {
 }
 
 impl<'b> Allowed<'b> {
+    /// Limits of either sign, within others.
+    pub fn of_either_way(most: Expr<'b>, others: Option<Self>) -> Self {
+        let Some(Self { least, most: other }) = others else {
+            named! {
+                let least = -most;
+            }
+            return Self { least, most };
+        };
+        named! {
+            let j_least = least.max(-most);
+            let j_most = other.min(most);
+        }
+        Self {
+            least: j_least,
+            most: j_most,
+        }
+    }
+
     /// A set-point within the limits.
     pub fn limit(self, j: Expr<'b>) -> Expr<'b> {
         j.max(self.least).min(self.most)

@@ -3,6 +3,7 @@
 //! Each file builds one or two stages of a step (semantics pages under `laws`); a controller's own
 //! folder combines them. Real numbers end here: the results are integers with documentation.
 
+mod bus_current;
 mod common_mode;
 mod commutation;
 mod emf;
@@ -16,6 +17,7 @@ pub mod set_point;
 mod slew;
 mod speed;
 
+pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;
 pub use commutation::{Commutation, CommutationRule};
 pub use emf::{

@@ -4,7 +4,9 @@ use super::current_loop::LoopDesign;
 use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, rpm, significant};
-use crate::spec::{BusSource, CurrentSensor, HallCapture, InverterSpec, SensedPhases, Spec};
+use crate::spec::{
+    BusCurrents, BusSource, CurrentSensor, HallCapture, InverterSpec, SensedPhases, Spec,
+};
 use std::f64::consts::FRAC_PI_3;
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: phase in, phase out.
@@ -209,6 +211,24 @@ fn measured_bus(inverter: &InverterSpec) -> Vec<String> {
     lines
 }
 
+/// Limits of the bus current.
+fn bus_current(inverter: &InverterSpec) -> Vec<String> {
+    let mut lines = vec![];
+    let BusCurrents { drawn, returned } = inverter.bus_currents;
+    for (most, what) in [
+        (drawn, "drawn from the supply"),
+        (returned, "returned to it"),
+    ] {
+        if let Some(most) = most {
+            lines.push(format!(
+                "The set-point is taken back where more than {} would be {what}, in the mean over some periods.",
+                engineering(most, "A")
+            ));
+        }
+    }
+    lines
+}
+
 /// Start-up and trips, with the drive's numbers.
 pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     let mut lines = vec![
@@ -221,6 +241,7 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
     lines.extend(trips(spec));
     lines.push(brake(spec));
     lines.extend(measured_bus(&spec.inverter));
+    lines.extend(bus_current(&spec.inverter));
     lines.push("What the supervisor cannot see: `hexagen::Supervisor`.".to_owned());
     lines
 }

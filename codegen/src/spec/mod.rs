@@ -46,7 +46,8 @@ pub use controller::{
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};
 pub use model::{
-    BUS_FRESH, BusSource, EmfShape, Fade, HALL_ANGLES, HallCapture, InverterSpec, MotorSpec, Spec,
+    BUS_FRESH, BusCurrents, BusSource, EmfShape, Fade, HALL_ANGLES, HallCapture, InverterSpec,
+    MotorSpec, Spec,
 };
 pub use option_texts::help as option_help;
 pub use rule::Rule;

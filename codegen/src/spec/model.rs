@@ -248,6 +248,15 @@ pub enum BusSource {
     },
 }
 
+/// Limits of the bus current, ampere.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BusCurrents {
+    /// Greatest current drawn from the supply.
+    pub drawn: Option<f64>,
+    /// Greatest current returned to it.
+    pub returned: Option<f64>,
+}
+
 /// Bus voltages between which the largest set-point falls in proportion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fade {
@@ -331,6 +340,8 @@ pub struct InverterSpec {
     pub trip_current: f64,
     /// Largest set-point, ampere.
     pub max_current: f64,
+    /// Limits of the bus current.
+    pub bus_currents: BusCurrents,
     /// Hall edge capture.
     pub hall_capture: HallCapture,
     /// Mechanical speed below which the angle is the sector's centre, rad/s.

@@ -3,8 +3,8 @@
 
 use super::words::Words;
 use super::{
-    BusSource, CurrentSensing, EmfShape, HallCapture, InverterSpec, MotorSpec, SensedPhases,
-    SensingTimes, Spec,
+    BusCurrents, BusSource, CurrentSensing, EmfShape, HallCapture, InverterSpec, MotorSpec,
+    SensedPhases, SensingTimes, Spec,
 };
 use crate::spec::ControllerSpec;
 use std::fmt::{Debug, Display};
@@ -83,6 +83,15 @@ impl Spec {
         text.number("offset_tolerance", inverter.offset_tolerance);
         text.number("trip_current", inverter.trip_current);
         text.number("max_current", inverter.max_current);
+        let BusCurrents { drawn, returned } = inverter.bus_currents;
+        for (key, most) in [
+            ("bus_current_limit", drawn),
+            ("return_current_limit", returned),
+        ] {
+            if let Some(most) = most {
+                text.number(key, most);
+            }
+        }
         text.word(
             "hall_capture",
             match inverter.hall_capture {
@@ -181,9 +190,9 @@ impl Text {
 #[cfg(test)]
 mod tests {
     use crate::spec::{
-        BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor, Discretisation,
-        EmfShape, EmfSource, HALL_ANGLES, HallCapture, InverterSpec, LimitRule, LoopOptions,
-        Modulation, MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
+        BusCurrents, BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor,
+        Discretisation, EmfShape, EmfSource, HALL_ANGLES, HallCapture, InverterSpec, LimitRule,
+        LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
     };
 
     fn hub_drive() -> Spec {
@@ -227,6 +236,7 @@ mod tests {
                 offset_tolerance: 102,
                 trip_current: 38.0,
                 max_current: 20.0,
+                bus_currents: BusCurrents::default(),
                 hall_capture: HallCapture::Timer { ticks: 37.5 },
                 minimum_speed: 4.0,
                 maximum_speed: 314.0,

@@ -153,6 +153,10 @@ pub struct Inverter {
     pub trip_current: f64,
     /// Largest current set-point, ampere.
     pub max_current: f64,
+    /// Greatest bus current drawn from the supply, ampere.
+    pub bus_current_limit: Option<f64>,
+    /// Greatest bus current returned to it, ampere.
+    pub return_current_limit: Option<f64>,
     /// Dead time, second; only if above 0.
     #[serde(default)]
     pub dead_time: f64,
@@ -336,6 +340,21 @@ impl Spec {
             Controller::Phcc(phcc) => phcc.loop_options(),
             Controller::PiPwm(pi_pwm) => pi_pwm.loop_options(),
             Controller::PPwm(p_pwm) => p_pwm.loop_options(),
+        }
+    }
+
+    /// Part of the PWM period that a pulse loses to the dead time; 0 for whole vectors.
+    pub fn dead_share(&self) -> f64 {
+        let pulses = match &self.controller {
+            Controller::FcsMpc(fcs_mpc) => fcs_mpc.modulated == Switch::On,
+            Controller::Phcc(_) => false,
+            Controller::Pdcc(_) | Controller::PiPwm(_) | Controller::PPwm(_) => true,
+        };
+        let pwm_period = self.inverter.t_s / f64::from(self.inverter.pwm_per_control);
+        if pulses {
+            self.inverter.dead_time / pwm_period
+        } else {
+            0.0
         }
     }
 

@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 23] = [
+const VARIANTS: [(&str, &str, Fields); 24] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -83,6 +83,14 @@ const VARIANTS: [(&str, &str, Fields); 23] = [
         "pdcc.slew-rate",
         "pdcc:reference=quasi_square,slew_rate=200 A/s",
         &[("inverter", "hall_glitches", "3")],
+    ),
+    (
+        "pdcc.bus-current",
+        "pdcc",
+        &[
+            ("inverter", "bus_current_limit", "10 A"),
+            ("inverter", "return_current_limit", "5 A"),
+        ],
     ),
     (
         "pdcc.dead-time",

@@ -225,6 +225,10 @@ impl<'b> CurrentLoop<'_, 'b> {
         let j = set_point.j.read();
         let fade = words.fade.zip(set_point.told_bus()).zip(tracked.direction);
         let allowed = fade.map(|((fade, v_bus), direction)| fade.allowed(l, v_bus, direction));
+        let allowed = match words.bus_current {
+            Some(limit) => Some(limit.allowed(l, allowed)),
+            None => allowed,
+        };
         let regulated = words.speed.zip(tracked.rotor);
         let regulated =
             regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j, allowed));
@@ -453,6 +457,9 @@ impl<'b> CurrentLoop<'_, 'b> {
             remembered.extend(self.fold(held, left_over));
         }
         remembered.extend(front.of_set_point);
+        if let Some(limit) = words.bus_current {
+            remembered.extend(limit.follow(self.l, front.currents, command));
+        }
         remembered.extend(front.residual_count);
         if let (Some(commutation), Some(rule)) = (front.commutation, words.pair) {
             remembered.extend(rule.sector_prev.map(|word| (word, front.sector)));

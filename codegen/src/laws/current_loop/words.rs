@@ -4,7 +4,8 @@ use super::CurrentLoop;
 use super::residual::ResidualWatch;
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{
-    BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator, direction_word, sector_word,
+    BusCurrentLimit, BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator,
+    direction_word, sector_word,
 };
 use crate::ir::{Interval, Memory};
 use crate::spec::{EmfSource, Reference};
@@ -59,6 +60,8 @@ pub struct Words<'b> {
     pub fade: Option<BusFade>,
     /// Slew rate of the set-point.
     pub slew: Option<SlewLimit<'b>>,
+    /// Limits of the bus current.
+    pub bus_current: Option<BusCurrentLimit<'b>>,
     /// Commutation.
     pub pair: Option<CommutationRule<'b>>,
     /// Current of the last sample.
@@ -129,6 +132,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             slew: options
                 .slew_rate
                 .map(|rate| SlewLimit::new(l, rate, set_point)),
+            bus_current: BusCurrentLimit::new(l, options.delay, set_point),
             pair: needs.commutation.then(|| self.commutation_rule()),
             i_prev: sees.then(|| self.current_words()),
             v_cmd: (needs_command && (needs.predicts() || sees)).then(|| {

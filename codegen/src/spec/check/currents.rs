@@ -3,10 +3,10 @@
 use super::inverter::{Adc, Inverter, usual_tolerance};
 use super::motor::Motor;
 use crate::diagnostics::catalogue;
-use crate::diagnostics::{Collector, engineering};
+use crate::diagnostics::{Collector, at_least, at_most, engineering};
 use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
 use crate::spec::reader::Reader;
-use crate::spec::{ControllerSpec, EmfShape, Reference};
+use crate::spec::{BusCurrents, ControllerSpec, EmfShape, Reference};
 
 /// Margin of the default trip level above the currents that whole vectors reach.
 const ROOM: f64 = 1.05;
@@ -98,6 +98,25 @@ fn read(
         return None;
     }
     Some(Levels { shown, max })
+}
+
+/// Limits of the bus current, which is at most that of a phase.
+pub(super) fn bus(inverter: &Inverter, trip: f64, errors: &mut Collector) -> BusCurrents {
+    let least = LEAST_COUNTS * inverter.adc.as_ref().map_or(0.0, |adc| adc.gain);
+    let [drawn, returned] = inverter.bus_currents.each_ref().map(|given| {
+        let given = given.as_ref()?;
+        if given.si < least * (1.0 - 1e-9) || given.si > trip * (1.0 + 1e-9) {
+            errors.push(catalogue::out_of_limits(
+                &given.part.location,
+                given.part.field,
+                &given.part.given,
+                &format!("{}, ten ADC counts,", engineering(at_least(least), "A")),
+                &format!("{}, the trip level", engineering(at_most(trip), "A")),
+            ));
+        }
+        Some(given.si)
+    });
+    BusCurrents { drawn, returned }
 }
 
 /// The `rated` current. The rated torque of a sinusoidal EMF may be that of a quasi-square current,

@@ -84,6 +84,7 @@ pub(super) fn inverter(
         offset_tolerance: adc.offset_tolerance,
         trip_current,
         max_current,
+        bus_currents: currents::bus(inverter, trip_current, errors),
         hall_capture: capture?,
         minimum_speed,
         maximum_speed,

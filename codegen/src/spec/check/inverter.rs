@@ -27,6 +27,8 @@ pub(super) struct Inverter<'a> {
     pub sensing: Sensing,
     pub trip_current: Option<Given<'a>>,
     pub max_current: Option<Given<'a>>,
+    /// `bus_current_limit`, `return_current_limit`.
+    pub bus_currents: [Option<Given<'a>>; 2],
     pub hall_timer_clock: Option<Given<'a>>,
     /// Whether `hall_timer_clock` was written, readable or not.
     pub hall_timer_clock_given: bool,
@@ -85,6 +87,8 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         sensing,
         trip_current: reader.plain_quantity(errors, "trip_current"),
         max_current: reader.plain_quantity(errors, "max_current"),
+        bus_currents: ["bus_current_limit", "return_current_limit"]
+            .map(|name| reader.plain_quantity(errors, name)),
         hall_timer_clock: reader.plain_quantity(errors, "hall_timer_clock"),
         hall_timer_clock_given: reader.field("hall_timer_clock").is_some(),
         minimum_speed: reader.plain_quantity(errors, "minimum_speed"),

@@ -3,7 +3,7 @@
 
 use crate::diagnostics::Code;
 use crate::pipeline::{generate, warnings};
-use crate::spec::{BusSource, HallCapture, Origins, Spec, check, parse_toml};
+use crate::spec::{BusCurrents, BusSource, HallCapture, Origins, Spec, check, parse_toml};
 
 const MOTOR: &str = r#"[motor]
 pole_pairs = 4
@@ -397,6 +397,39 @@ fn fades_end_a_quarter_of_their_width_before_the_voltage_that_trips() {
         told.contains("`braking_fade`: 20 V lies outside 0 V to 12 V, from `bus_voltage` to 60 V"),
         "{told}"
     );
+}
+
+#[test]
+fn bus_currents_lie_between_ten_counts_and_the_trip_level() {
+    let limits = |lines: &str| {
+        let inverter = format!("{TIMER}adc_range = \"40 A\"\ntrip_current = \"30 A\"\n{lines}");
+        try_check(&inverter, "kind = \"pdcc\"").map(|(spec, _)| spec.inverter.bus_currents)
+    };
+    let both = "bus_current_limit = \"8 A\"\nreturn_current_limit = \"500 mA\"";
+    for (lines, drawn, returned) in [
+        ("", None, None),
+        (both, Some(8.0), Some(0.5)),
+        ("return_current_limit = \"2 A\"", None, Some(2.0)),
+    ] {
+        assert_eq!(
+            limits(lines),
+            Ok(BusCurrents { drawn, returned }),
+            "{lines}"
+        );
+    }
+    for (line, limit) in [
+        (
+            "bus_current_limit = \"31 A\"",
+            "31 A lies outside 195.4 mA, ten ADC counts, to 30 A, the trip level",
+        ),
+        (
+            "return_current_limit = \"100 mA\"",
+            "100 mA lies outside 195.4 mA",
+        ),
+    ] {
+        let told = limits(line).expect_err(line);
+        assert!(told.contains(limit), "{told}");
+    }
 }
 
 #[test]

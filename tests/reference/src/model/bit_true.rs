@@ -6,6 +6,7 @@
 //! from the generator. Section numbers are those of `semantics.md`.
 
 mod applied;
+mod bus_current;
 mod constants;
 mod emf;
 mod fade;
@@ -31,6 +32,7 @@ use crate::exact::{
     Coefficient, Word, both, floor, floor_weighted, input, lesser, pow2, within, word,
 };
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
+use bus_current::BusCurrent;
 use constants::{Constants, Scale};
 use fade::Fade;
 use hexagen::{Fault, Legs, Sample};
@@ -53,6 +55,7 @@ pub struct BitTrue<W: Word = f64> {
     speed: Option<Regulator<W>>,
     slew: Option<Slew>,
     fade: Option<Fade<W>>,
+    bus_current: Option<BusCurrent<W>>,
     residual: Option<ResidualWatch<W>>,
     /// Volt per ampere of the set-point.
     gain: f64,
@@ -126,6 +129,7 @@ impl<W: Word> BitTrue<W> {
             speed,
             slew: Slew::new(spec, &scale, &k)?,
             fade: Fade::new(spec, &scale)?,
+            bus_current: BusCurrent::new(spec, &scale, &k)?,
             residual: ResidualWatch::new(spec, &scale)?,
             v_bus: word(k.v_bus_nominal),
             gain: reference_gain(spec),
@@ -370,6 +374,10 @@ impl<W: Word> BitTrue<W> {
         let direction = self.state.timing.direction;
         let fade = self.fade.as_ref();
         let allowed = fade.map_or([None; 2], |fade| fade.allowed(self.v_bus, direction));
+        let allowed = match &self.bus_current {
+            Some(limit) => limit.allowed(allowed, &self.state),
+            None => allowed,
+        };
         let mut speed_integral = self.state.speed_integral;
         if let Some(speed) = &self.speed {
             let turning = direction * self.state.omega;
@@ -502,6 +510,9 @@ impl<W: Word> BitTrue<W> {
             } else {
                 command.off
             };
+            if let Some(limit) = &self.bus_current {
+                limit.follow(&self.k, &mut self.state, i_abc, command.legs);
+            }
             self.state.v_cmd = decision.u;
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;

@@ -93,6 +93,10 @@ pub struct Ideal {
     slew_step: f64,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
     fades: [Option<[f64; 2]>; 2],
+    /// Greatest bus current, drawn and returned, ampere.
+    bus_currents: [Option<f64>; 2],
+    /// Part of the PWM period that a pulse loses to the dead time; 0 for whole vectors.
+    dead_share: f64,
     // Set-points.
     current: f64,
     /// The speed set-point, mechanical rad/s.
@@ -147,6 +151,8 @@ impl Ideal {
             t_s: inverter.t_s,
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
             fades: [inverter.braking_fade, inverter.motoring_fade],
+            bus_currents: [inverter.bus_current_limit, inverter.return_current_limit],
+            dead_share: spec.dead_share(),
             current: if spec.loop_options().has_speed_loop() {
                 inverter.max_current
             } else {
@@ -453,6 +459,7 @@ impl Ideal {
             } else {
                 command.off
             };
+            self.follow_bus_current(&i_abc, command.duties);
             self.state.v_cmd = to_ab(&u);
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
@@ -479,6 +486,10 @@ impl Ideal {
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
             self.state.current_in_force = 0.0;
+            self.state.current_withheld = 0.0;
+            self.state.line_cmd = [0.0; 2];
+            self.state.line_ended = [0.0; 2];
+            self.state.bus_current = 0.0;
             self.state.rises = [None; 2];
             self.state.vector_prev = 0;
             self.state.past = Past::default();
@@ -501,7 +512,7 @@ impl Ideal {
         command.duties
     }
 
-    /// Least and greatest current at the bus voltage, by the fades.
+    /// Least and greatest current, by the fades and the bus current.
     fn allowed(&self, direction: f64) -> [f64; 2] {
         let share = |fade: Option<[f64; 2]>| {
             fade.map_or(f64::INFINITY, |[full, none]| {
@@ -512,7 +523,44 @@ impl Ideal {
         let [braking, motoring] = self.fades.map(share);
         let backward = if direction == 1.0 { braking } else { motoring };
         let forward = if direction == -1.0 { braking } else { motoring };
-        [-backward, forward]
+        let left = self.max_current - self.state.current_withheld;
+        if self.bus_currents == [None; 2] {
+            [-backward, forward]
+        } else {
+            [-backward.min(left), forward.min(left)]
+        }
+    }
+
+    /// Takes the set-point back by what the bus current exceeds a limit by (section "Bus current").
+    fn follow_bus_current(&mut self, i: &Vector3<f64>, command: Duties) {
+        if self.bus_currents == [None; 2] {
+            return;
+        }
+        let state = &mut self.state;
+        let duty = [0, 1, 2].map(|x| match command.state[x] {
+            LegState::Off if i[x] < 0.0 => 1.0,
+            LegState::Off => 0.0,
+            _ => command.duty[x],
+        });
+        let line = [0, 1].map(|x| duty[x] - duty[2]);
+        let begins = if self.variant.delayed() {
+            state.line_cmd
+        } else {
+            line
+        };
+        let paid: f64 = (0..2)
+            .map(|x| (state.line_ended[x] + begins[x]) / 2.0 * i[x])
+            .sum();
+        let pulsed = (0..3).filter(|&x| command.state[x] == LegState::Pulsed);
+        let lost = self.dead_share * pulsed.map(|x| i[x].abs()).sum::<f64>();
+        state.bus_current += (paid - lost - state.bus_current) / 16.0;
+        let [drawn, returned] = self.bus_currents;
+        let drawn = drawn.map_or(f64::INFINITY, |most| most - state.bus_current);
+        let returned = returned.map_or(f64::INFINITY, |most| most + state.bus_current);
+        let withheld = state.current_withheld - drawn.min(returned) / 32.0;
+        state.current_withheld = withheld.clamp(0.0, self.max_current);
+        state.line_ended = begins;
+        state.line_cmd = line;
     }
 
     /// Electrical angle per tick, radians; 0 while unknown.

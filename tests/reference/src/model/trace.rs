@@ -101,4 +101,12 @@ pub struct PhysicalState {
     pub speed_integral: f64,
     /// Set-point in force with a slew rate, ampere.
     pub current_in_force: f64,
+    /// By how much the bus current limits the set-point below the largest, ampere.
+    pub current_withheld: f64,
+    /// Duties of phases a and b less that of phase c, of the last step's command.
+    pub line_cmd: [f64; 2],
+    /// The same in the period that ends with the next sample.
+    pub line_ended: [f64; 2],
+    /// Mean bus current, ampere.
+    pub bus_current: f64,
 }

@@ -90,13 +90,13 @@ pub struct Scale<'a> {
     /// Phase resistance, ohm.
     pub resistance: f64,
     /// Ampere per ADC count.
-    g: f64,
+    pub g: f64,
     /// Volt per timer count.
     pub w: f64,
     /// Nominal bus, volt.
     pub v_bus: f64,
     /// 2^f_i.
-    two_i: f64,
+    pub two_i: f64,
     /// 2^f_v.
     pub two_v: f64,
     /// Voltage words per current word, times ohm.
@@ -172,6 +172,11 @@ impl<'a> Scale<'a> {
     pub fn extra_bits(&self, name: &'static str) -> Result<i32, Error> {
         let bits = self.formats.frac_bits(name)? as i32;
         Ok(bits - self.formats.frac_bits("voltage")? as i32)
+    }
+
+    /// Fraction bits of a format, below 0 where its base is a fraction of a word.
+    pub fn signed_bits(&self, name: &'static str) -> Result<i32, Error> {
+        Ok(i32::from(self.formats.get(name)?.frac_bits))
     }
 
     /// Fraction bits of a format; 0 if the variant does not use it.
@@ -274,6 +279,8 @@ impl<W: Word> Constants<W> {
             .unwrap_or(0);
         let factors = if motion.turns { 1 } else { 2 };
         let slope = motion.per_product * w / two_v * pow2(word - factors * q);
+        let limits_bus =
+            inverter.bus_current_limit.is_some() || inverter.return_current_limit.is_some();
         let fades = inverter.braking_fade.is_some() || inverter.motoring_fade.is_some();
         Ok(Self {
             parts: Parts::new(&[
@@ -282,6 +289,8 @@ impl<W: Word> Constants<W> {
                 (Part::Rotor, rotor),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Slew, variant.options.slew_rate > 0.0),
+                (Part::BusCurrent, limits_bus),
+                (Part::LineCommand, limits_bus && variant.delayed()),
                 (Part::Commutation, commutation.is_some()),
                 (Part::SectorInForce, commutation.is_some() && advanced),
                 (Part::Sight, variant.sees()),

@@ -8,6 +8,8 @@ pub enum Part {
     Rotor,
     Speed,
     Slew,
+    BusCurrent,
+    LineCommand,
     Commutation,
     SectorInForce,
     Sight,

@@ -1,5 +1,6 @@
 //! The bit-true model's signals in physical units, not part of its arithmetic.
 
+use super::bus_current::BusCurrent;
 use super::constants::Constants;
 use super::law::phcc::in_due;
 use super::parts::Part;
@@ -57,8 +58,12 @@ impl BitTrue {
     pub fn physical_state(&self) -> PhysicalState {
         let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
         let slew_ampere = self.slew.map_or(0.0, |slew| slew.ampere);
+        let of_bus = self
+            .bus_current
+            .as_ref()
+            .map_or([0.0; 2], BusCurrent::amperes);
         self.state
-            .to_physical(&self.k, [integral_ampere, slew_ampere])
+            .to_physical(&self.k, [integral_ampere, slew_ampere], of_bus)
     }
 }
 
@@ -68,6 +73,7 @@ impl State<f64> {
         self,
         k: &Constants<f64>,
         [integral_ampere, slew_ampere]: [f64; 2],
+        [withheld_ampere, bus_ampere]: [f64; 2],
     ) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
         let mut due = self.past.due;
@@ -103,6 +109,10 @@ impl State<f64> {
             },
             speed_integral: self.speed_integral * integral_ampere,
             current_in_force: self.j_in_force * slew_ampere,
+            current_withheld: self.j_withheld * withheld_ampere,
+            line_cmd: self.line_cmd.map(|counts| counts / k.timer_period),
+            line_ended: self.line_ended.map(|counts| counts / k.timer_period),
+            bus_current: self.i_bus_mean * bus_ampere,
         }
     }
 }

@@ -19,6 +19,12 @@ pub struct State<W: Word> {
     pub omega: W,
     pub speed_integral: W,
     pub j_in_force: W,
+    pub j_withheld: W,
+    /// `line_a_cmd`, `line_b_cmd`.
+    pub line_cmd: [W; 2],
+    /// `line_a_ended`, `line_b_ended`.
+    pub line_ended: [W; 2],
+    pub i_bus_mean: W,
     pub sector_eff_prev: usize,
     pub commutation_left: W,
     pub i_prev: [W; 2],
@@ -183,6 +189,16 @@ macro_rules! for_each_word {
         if $parts.has(Part::Slew) {
             $show!("j_in_force", $state.j_in_force);
         }
+        if $parts.has(Part::BusCurrent) {
+            $show!("j_withheld", $state.j_withheld);
+            if $parts.has(Part::LineCommand) {
+                $show!("line_a_cmd", $state.line_cmd[0]);
+                $show!("line_b_cmd", $state.line_cmd[1]);
+            }
+            $show!("line_a_ended", $state.line_ended[0]);
+            $show!("line_b_ended", $state.line_ended[1]);
+            $show!("i_bus_mean", $state.i_bus_mean);
+        }
         if $parts.has(Part::Commutation) {
             if $parts.has(Part::SectorInForce) {
                 $show!("sector_eff_prev", $state.sector_eff_prev);
@@ -284,6 +300,10 @@ impl<W: Word> State<W> {
     pub fn stop(&mut self) {
         self.speed_integral = word(0.0);
         self.j_in_force = word(0.0);
+        self.j_withheld = word(0.0);
+        self.line_cmd = [word(0.0); 2];
+        self.line_ended = [word(0.0); 2];
+        self.i_bus_mean = word(0.0);
         self.v_cmd = [word(0.0); 2];
         self.t_cmd = [word(0.0); 3];
         self.off_cmd = 0;

@@ -1,0 +1,132 @@
+//! Limits of the bus current hold in the mean, and take nothing where they are not reached.
+
+use hexagen_lab::closed_loop::ClosedLoop;
+use hexagen_lab::engine::{
+    Engine, Model, MotorSource, Prepared, library, plant_of, prepare, run_of,
+};
+use hexagen_lab::plant::{EnergyMeter, Plant};
+use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_3;
+
+/// Laws with the tolerance of the mean: that of whole vectors is of currents that change much in a period.
+const LAWS: [(&str, f64); 6] = [
+    ("pdcc", 0.015),
+    ("pi-pwm", 0.015),
+    ("pdcc:modulation=pair", 0.015),
+    ("pdcc:emf=held,reference=quasi_square", 0.015),
+    ("fcs-mpc", 0.06),
+    ("phcc", 0.06),
+];
+
+/// The drive of a library motor with these fields of the inverter.
+fn drive(motor: &str, law: &str, fields: &str) -> Prepared {
+    let mut source = MotorSource::of_library(motor).expect("is in the library");
+    let section = format!("[inverter]\n{fields}");
+    source.text = source.text.replace("[inverter]\n", &section);
+    prepare(&source, Some(law)).unwrap_or_else(|why| panic!("{motor}, {law}: {why}"))
+}
+
+fn limits([drawn, returned]: [f64; 2]) -> String {
+    format!("bus_current_limit = \"{drawn} A\"\nreturn_current_limit = \"{returned} A\"\n")
+}
+
+/// The bus current that limits leave of a free one.
+fn left(free: f64, [drawn, returned]: [f64; 2]) -> f64 {
+    free.clamp(-returned, drawn)
+}
+
+struct Bench<'d> {
+    drive: &'d Prepared,
+    closed: ClosedLoop<Engine<'d>>,
+    /// Periods of a sector.
+    sector: usize,
+}
+
+impl<'d> Bench<'d> {
+    /// A shaft held at this share of the rated speed, at set-point 0.
+    fn at(drive: &'d Prepared, share: f64) -> Self {
+        let spec = &drive.spec;
+        let omega = share * spec.motor.rated_speed;
+        let plant = Plant::new(plant_of(spec), 0.2, omega).expect("a plant");
+        let delay = run_of(spec, omega, 0.0).delay;
+        let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
+        let sector = FRAC_PI_3 / (omega.abs() * f64::from(spec.motor.pole_pairs));
+        let mut bench = Self {
+            drive,
+            closed: ClosedLoop::new(plant, engine, delay),
+            sector: (sector / spec.inverter.t_s).round() as usize,
+        };
+        // The rotor's speed becomes known.
+        bench.closed.run(20 * bench.sector, &mut ());
+        bench
+    }
+
+    /// Mean bus current over so many periods, ampere.
+    fn bus_current(&mut self, periods: usize) -> f64 {
+        let plant = self.closed.plant();
+        let (mut meter, v_bus) = (EnergyMeter::new(plant), plant.params().v_bus);
+        self.closed.run(periods, &mut meter);
+        let energy = meter.balance(self.closed.plant()).bus;
+        energy / v_bus / (periods as f64 * self.drive.spec.inverter.t_s)
+    }
+
+    /// The same at a set-point, once it has settled.
+    fn settled(&mut self, current: f64) -> f64 {
+        self.closed.controller().set_current(current);
+        self.closed.run(1500, &mut ());
+        self.bus_current(24 * self.sector)
+    }
+}
+
+#[test]
+fn every_controller_keeps_to_the_limits() {
+    const LIMITS: [f64; 2] = [8.0, 3.0];
+    let cases = LAWS
+        .iter()
+        .flat_map(|law| [(law, ""), (law, "dead_time = \"1 us\"\n")]);
+    let cases: Vec<_> = cases.collect();
+    cases.par_iter().for_each(|((law, tolerance), dead_time)| {
+        let free = drive("trivedi-keshri-660w", law, dead_time);
+        let fields = format!("{}{dead_time}", limits(LIMITS));
+        let limited = drive("trivedi-keshri-660w", law, &fields);
+        let rated = free.spec.motor.rated_current;
+        for share in [0.1, 0.5, 1.0, -1.0] {
+            let [mut one, mut two] = [&free, &limited].map(|drive| Bench::at(drive, share));
+            for part in [1.0, -1.0, 0.3] {
+                let [free, found] = [&mut one, &mut two].map(|bench| bench.settled(part * rated));
+                let wanted = left(free, LIMITS);
+                assert!(
+                    (found - wanted).abs() < tolerance * wanted.abs() + 0.02,
+                    "{law} {dead_time} at {share} of rated speed, {part} of rated current: {found} A, free {free} A"
+                );
+            }
+            assert_eq!(two.closed.tripped(), None, "{law}");
+        }
+    });
+}
+
+/// The limits are 0.4 and 0.3 of what the motor draws and returns at rated speed. 300 periods after a step,
+/// the mean is within 3 % of them.
+#[test]
+fn limits_hold_for_every_motor() {
+    library().par_iter().for_each(|motor| {
+        let free = drive(motor.name, "pdcc", "");
+        let rated = free.spec.motor.rated_current;
+        let free = [1.0, -1.0].map(|part| Bench::at(&free, 1.0).settled(part * rated));
+        let limits = [0.4 * free[0], 0.3 * -free[1]];
+        let limited = drive(motor.name, "pdcc", &self::limits(limits));
+        for (part, free) in [1.0, -1.0].into_iter().zip(free) {
+            let mut bench = Bench::at(&limited, 1.0);
+            bench.closed.controller().set_current(part * rated);
+            bench.closed.run(300, &mut ());
+            let found = bench.bus_current(4 * bench.sector);
+            let wanted = left(free, limits);
+            assert!(
+                (found / wanted - 1.0).abs() < 0.03,
+                "{} at {part} of rated current: {found} A in place of {wanted} A",
+                motor.name
+            );
+            assert_eq!(bench.closed.tripped(), None, "{}", motor.name);
+        }
+    });
+}
