@@ -6,7 +6,7 @@ use super::set_point::SetPointWords;
 use super::{Command, Lowering, OFF, PULSED};
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
-use crate::ir::{Exact, Expr, Interval, Memory, Phases, Real, named};
+use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Phases, Real, named};
 use crate::spec::BusCurrents;
 
 /// Control periods in which a bus current that is too high by 1 A takes back 1 A of the set-point. At the
@@ -103,16 +103,10 @@ impl<'b> BusCurrentLimit<'b> {
         l.rounded_number(name, raw, Exact::Number(Real::of(exact)), &doc)
     }
 
-    /// The words and their new values, from the currents and this step's command. The period that has
-    /// ended and the one that begins count half each: with the currents between them.
-    pub fn follow(
-        &self,
-        l: &Lowering<'b>,
-        currents: Phases<'b, 3>,
-        command: &Command<'b>,
-    ) -> Vec<(Memory<'b>, Expr<'b>)> {
+    /// The share of a distance to a limit by which the set-point moves in a period.
+    fn share(&self, l: &Lowering<'_>) -> Coefficient {
         let words = self.gain * l.scale.voltage() / f64::from(PERIODS);
-        let k_bus_current = l.scaled_coefficient(
+        l.scaled_coefficient(
             "k_bus_current",
             words / self.per_ampere(l),
             32,
@@ -121,7 +115,18 @@ impl<'b> BusCurrentLimit<'b> {
                 &format!("1/{PERIODS} of a set-point's ampere per ampere"),
             ],
             ["K/32/w 2^f_v per word of `i_bus`", "words of voltage"],
-        );
+        )
+    }
+
+    /// The words and their new values, from the currents and this step's command. The period that has
+    /// ended and the one that begins count half each: with the currents between them.
+    pub fn follow(
+        &self,
+        l: &Lowering<'b>,
+        currents: Phases<'b, 3>,
+        command: &Command<'b>,
+    ) -> Vec<(Memory<'b>, Expr<'b>)> {
+        let k_bus_current = self.share(l);
         l.b.stage(
             "follow_bus_current",
             &[
