@@ -9,6 +9,7 @@
 
 mod bounded;
 pub mod ledger;
+mod operations;
 
 pub use bounded::Bounded;
 

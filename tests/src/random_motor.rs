@@ -1,5 +1,8 @@
 //! Plausible motors with a fitting inverter, at random.
 
+use hexagen_lab::engine::{MotorSource, Prepared, prepare};
+use std::env;
+
 /// A generator of random numbers that gives the same motors everywhere.
 struct Random(u64);
 
@@ -69,4 +72,23 @@ impl RandomMotor {
     pub fn toml(self) -> String {
         self.toml
     }
+}
+
+/// Drives of random motors, numbered from `first` on, that the generator takes and that fit: `few`
+/// in a push, and `many` where `HEXAGEN_WHOLE_PRODUCTS` is set, as in the nightly run.
+pub fn random_drives(
+    first: u64,
+    variant: &str,
+    [few, many]: [usize; 2],
+    fits: impl Fn(&Prepared) -> bool,
+) -> Vec<Prepared> {
+    let drives = (first..).filter_map(|seed| {
+        let name = format!("motor {seed}");
+        let file = format!("{name}.toml");
+        let text = RandomMotor::new(seed).toml();
+        prepare(&MotorSource { name, file, text }, Some(variant)).ok()
+    });
+    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
+    let wanted = if is_whole { many } else { few };
+    drives.filter(fits).take(wanted).collect()
 }

@@ -6,7 +6,7 @@ use super::set_point::SetPointWords;
 use super::{Command, Lowering, OFF, PULSED};
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
-use crate::ir::{Exact, Expr, Interval, Memory, Phases, Real, named};
+use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Phases, Real, named};
 use crate::spec::BusCurrents;
 
 /// Control periods in which a bus current that is too high by 1 A takes back 1 A of the set-point. At the
@@ -16,12 +16,20 @@ const PERIODS: u32 = 32;
 /// Base-2 logarithm of the periods of the mean, which takes the switching between vectors out.
 const MEAN_LOG2: u32 = 4;
 
+/// Bits of the set-point withheld: with short words a step of the set-point's word would be too much for a
+/// period.
+const BITS: u32 = 29;
+
 /// The set-point's limits by the bus current, which duties and phase currents tell.
 #[derive(Clone, Copy, Debug)]
 pub struct BusCurrentLimit<'b> {
     limits: BusCurrents,
     /// By how much the set-point is limited below the largest.
     withheld: Memory<'b>,
+    /// Its fraction bits beyond those of voltages.
+    extra: u32,
+    /// Greatest set-point word that a setter makes.
+    top: i64,
     /// Compare values of phases a and b less that of phase c: of the command that applies from now on,
     /// if that of the last step does, and of the period that has ended.
     commanded: Option<[Memory<'b>; 2]>,
@@ -44,6 +52,11 @@ impl<'b> BusCurrentLimit<'b> {
         let doc =
             "By how much the bus current limits the set-point below the largest, words of voltage.";
         let range = Interval::new(0, set_point.top);
+        let extra = BITS.saturating_sub(range.bits()).min(12);
+        let frac_bits = (l.scale.voltage_bits + extra) as i32;
+        let meaning = "set-point withheld, base one timer count of voltage";
+        l.format("j_withheld", 32, frac_bits, Rounding::RoundHalfUp, meaning);
+        let range = Interval::new(0, set_point.top << extra);
         let withheld = l.b.memory("j_withheld", 0, range, doc);
         let range = Interval::symmetric(i64::from(l.spec.inverter.timer_period));
         let commanded = (delay == 1).then(|| {
@@ -66,6 +79,8 @@ impl<'b> BusCurrentLimit<'b> {
         Some(Self {
             limits,
             withheld,
+            extra,
+            top: set_point.top,
             commanded,
             ended,
             mean,
@@ -78,13 +93,13 @@ impl<'b> BusCurrentLimit<'b> {
     pub fn allowed(&self, l: &Lowering<'b>, others: Option<Allowed<'b>>) -> Allowed<'b> {
         let doc = "Limits of the set-point by the bus current, alike in both directions.";
         l.b.stage("limit_bus_current", &[doc]);
-        let largest = self.withheld.read().interval().high;
-        let largest = l.number(
-            "j_largest",
-            largest,
-            "The largest set-point, words of voltage.",
-        );
-        Allowed::of_either_way(largest - self.withheld.read(), others)
+        let doc = "The largest set-point, words of voltage.";
+        let largest = l.number("j_largest", self.top, doc);
+        let withheld = match self.extra {
+            0 => self.withheld.read(),
+            extra => self.withheld.read() >> extra,
+        };
+        Allowed::of_either_way(largest - withheld, others)
     }
 
     /// Words of twice the bus current per ampere.
@@ -100,6 +115,22 @@ impl<'b> BusCurrentLimit<'b> {
         l.rounded_number(name, raw, Exact::Number(Real::of(exact)), &doc)
     }
 
+    /// The share of a distance to a limit by which the set-point moves in a period.
+    fn share(&self, l: &Lowering<'_>) -> Coefficient {
+        let words = self.gain * l.scale.voltage() * f64::from(self.extra).exp2();
+        let words = words / f64::from(PERIODS);
+        l.scaled_coefficient(
+            "k_bus_current",
+            words / self.per_ampere(l),
+            32,
+            [
+                "Set-point taken back or given back in a period, by the distance of the bus current to its limit.",
+                &format!("1/{PERIODS} of a set-point's ampere per ampere"),
+            ],
+            ["K/32/w 2^f_v per word of `i_bus`", "words of the set-point withheld"],
+        )
+    }
+
     /// The words and their new values, from the currents and this step's command. The period that has
     /// ended and the one that begins count half each: with the currents between them.
     pub fn follow(
@@ -108,17 +139,7 @@ impl<'b> BusCurrentLimit<'b> {
         currents: Phases<'b, 3>,
         command: &Command<'b>,
     ) -> Vec<(Memory<'b>, Expr<'b>)> {
-        let words = self.gain * l.scale.voltage() / f64::from(PERIODS);
-        let k_bus_current = l.scaled_coefficient(
-            "k_bus_current",
-            words / self.per_ampere(l),
-            32,
-            [
-                "Set-point taken back or given back in a period, by the distance of the bus current to its limit.",
-                &format!("1/{PERIODS} of a set-point's ampere per ampere"),
-            ],
-            ["K/32/w 2^f_v per word of `i_bus`", "words of voltage"],
-        );
+        let k_bus_current = self.share(l);
         l.b.stage(
             "follow_bus_current",
             &[

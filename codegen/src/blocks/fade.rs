@@ -30,7 +30,12 @@ impl<'b> Allowed<'b> {
     pub fn of_either_way(most: Expr<'b>, others: Option<Self>) -> Self {
         let (least, most) = match others {
             None => (-most, most),
-            Some(others) => (others.least.max(-most), others.most.min(most)),
+            Some(others) => {
+                named! {
+                    let j_left = most;
+                }
+                (others.least.max(-j_left), others.most.min(j_left))
+            }
         };
         named! {
             let j_bus_least = least;

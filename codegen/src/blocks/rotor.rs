@@ -7,7 +7,8 @@ use super::number::round_half_up;
 use crate::diagnostics::significant;
 use crate::interface::Rounding;
 use crate::ir::{Exact, Expr, Flag, Interval, Memory, Named, Real, named};
-use crate::spec::HallCapture;
+use crate::spec::{HallCapture, Spec};
+use std::f64::consts::TAU;
 
 /// A sixth of a turn: floor(2^32 / 6).
 const SIXTH: i64 = 715_827_882;
@@ -21,6 +22,12 @@ const INTERVALS: [&str; 6] = ["t1", "t2", "t3", "t4", "t5", "t6"];
 /// `share` of a sixth of a turn, exactly.
 fn sixth_turn(share: f64) -> Exact {
     Exact::Number(Real::of(f64::from(32).exp2() / 6.0 * share))
+}
+
+/// The mechanical speed of one word of `omega`, rad/s.
+pub(super) fn speed_word(spec: &Spec) -> f64 {
+    let tick = spec.inverter.t_s / spec.inverter.hall_capture.ticks_per_period();
+    TAU / (32_f64.exp2() * tick * f64::from(spec.motor.pole_pairs))
 }
 
 /// Ticks of the edge timer in a control period.

@@ -1,7 +1,7 @@
 //! Set-point words and the functions that set them (semantics, "Set-point words").
 
 use super::number::round_half_up;
-use super::speed::{SpeedWords, speed_word};
+use super::rotor::speed_word;
 use super::{Bus, Lowering, product_bound, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
@@ -24,6 +24,13 @@ pub struct SetPointWords<'b> {
     pub top: i64,
     /// Words of the speed loop; with a speed loop only.
     pub speed: Option<SpeedWords<'b>>,
+}
+
+/// Words of a speed loop.
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedWords<'b> {
+    /// Speed set-point, in words of `omega`.
+    pub reference: Param<'b>,
 }
 
 /// Words of a measured bus.
@@ -315,16 +322,7 @@ impl<'b> BusWords<'b> {
         else {
             return;
         };
-        let k_bus = l.scaled_coefficient(
-            "k_bus",
-            gain * l.scale.voltage(),
-            32,
-            [
-                "Bus-voltage ADC count to words of voltage.",
-                &format!("u = {} per count", engineering(gain, "V")),
-            ],
-            ["u/w 2^f_v", "words of voltage per count"],
-        );
+        let k_bus = words_per_count(l, gain);
         let [doc, stage_doc] = match self.ratio {
             Some(_) => [
                 "Words of the bus voltage from its ADC count.",
@@ -365,6 +363,20 @@ impl<'b> BusWords<'b> {
             }
         });
     }
+}
+
+/// Words of voltage per count of the bus voltage's ADC, of `gain` volt.
+fn words_per_count(l: &Lowering<'_>, gain: f64) -> Coefficient {
+    l.scaled_coefficient(
+        "k_bus",
+        gain * l.scale.voltage(),
+        32,
+        [
+            "Bus-voltage ADC count to words of voltage.",
+            &format!("u = {} per count", engineering(gain, "V")),
+        ],
+        ["u/w 2^f_v", "words of voltage per count"],
+    )
 }
 
 /// Nominal over measured bus voltage, for a measured one of at least `min`.

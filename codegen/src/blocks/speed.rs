@@ -1,10 +1,11 @@
 //! The PI speed regulator (semantics of predictive deadbeat, "Speed loop").
 
-use super::set_point::SetPointWords;
+use super::rotor::speed_word;
+use super::set_point::{SetPointWords, SpeedWords};
 use super::{Allowed, Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
-use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Named, Param, Real, named};
+use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Named, Real, named};
 use crate::spec::{Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
@@ -12,19 +13,6 @@ use std::f64::consts::TAU;
 const INTEGRAL_BITS: u32 = 29;
 /// Base-2 logarithm of the anti-windup gain over the integral gain.
 const TRACKING_LOG2: u32 = 2;
-
-/// The mechanical speed of one word of `omega`, rad/s.
-pub(super) fn speed_word(spec: &Spec) -> f64 {
-    let tick = spec.inverter.t_s / spec.inverter.hall_capture.ticks_per_period();
-    TAU / (32_f64.exp2() * tick * f64::from(spec.motor.pole_pairs))
-}
-
-/// Words of a speed loop.
-#[derive(Clone, Copy, Debug)]
-pub struct SpeedWords<'b> {
-    /// Speed set-point, in words of `omega`.
-    pub reference: Param<'b>,
-}
 
 /// The regulator: options and integral.
 #[derive(Clone, Copy, Debug)]

@@ -21,7 +21,7 @@ impl Part {
 }
 
 /// The outputs of a function, state and set-point words left out.
-pub(super) fn results(function: &Function) -> impl Iterator<Item = Value> {
+fn results(function: &Function) -> impl Iterator<Item = Value> {
     let outputs = function.outputs.iter().map(|&(_, value)| value);
     outputs.chain(function.told.iter().map(|&(_, value)| value))
 }
@@ -62,6 +62,8 @@ pub(super) struct Kept<'a> {
     /// New state words, written once at the end, in an order that reads each old word before it is
     /// overwritten.
     pub words: Vec<(&'a Word, Value)>,
+    /// The values from outside that the part's calls and stores use.
+    pub used: Vec<Value>,
 }
 
 impl Kept<'_> {
@@ -105,13 +107,30 @@ pub(super) fn kept<'a>(context: &Context<'a>, plans: &[StagePlan<'a>], part: Par
     }
     words.append(&mut moved);
     words.append(&mut computed);
+    let mut used: Vec<Value> = plans
+        .iter()
+        .filter(|plan| part.has(function, plan))
+        .flat_map(used_by)
+        .collect();
+    used.extend(words.iter().map(|&(_, value)| value));
+    if part == Part::Control {
+        used.extend(results(function));
+    }
     let words = words.into_iter();
     Kept {
         reads,
         words: words
             .map(|(state, value)| (&program.states[state.index()], value))
             .collect(),
+        used,
     }
+}
+
+/// The values from outside that a stage's call uses.
+fn used_by<'p>(plan: &'p StagePlan<'_>) -> impl Iterator<Item = Value> + 'p {
+    let guard = plan.stage.guard.as_ref().map(|guard| guard.condition);
+    let otherwise = plan.outcomes.iter().filter_map(|outcome| outcome.otherwise);
+    plan.arguments.iter().copied().chain(guard).chain(otherwise)
 }
 
 /// Values at rest of the words that the tracking does not store.

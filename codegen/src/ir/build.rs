@@ -129,12 +129,6 @@ impl ProgramBuilder {
         joined
     }
 
-    /// [`Self::join`] for a list of any length.
-    pub fn join_all<'b>(&'b self, results: &[(&str, Expr<'b>, Expr<'b>)]) -> Vec<Expr<'b>> {
-        let joined = results.iter().map(|&result| self.join([result])[0]);
-        joined.collect()
-    }
-
     /// Makes a value an observation.
     pub fn tell(&self, told: Told, value: Expr<'_>) {
         let mut draft = self.draft.borrow_mut();

@@ -110,29 +110,27 @@ fn start(spec: &Spec, design: &LoopDesign) -> String {
     }
 }
 
-/// Start-up and trips, with the drive's numbers.
-pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
-    let inverter = &spec.inverter;
-    let amperes = |counts: u32| engineering(f64::from(counts) * inverter.adc_gain.abs(), "A");
+/// Steps and acceptance of the calibration, and what follows it.
+fn calibration(inverter: &InverterSpec) -> String {
+    let tolerance = f64::from(inverter.offset_tolerance) * inverter.adc_gain.abs();
     let precharge = match inverter.precharge_periods {
         0 => "no pre-charge follows".to_owned(),
         periods => format!("{periods} steps of pre-charge follow"),
     };
-    let mut lines = vec![
-        String::new(),
-        "# Start-up and faults".to_owned(),
-        String::new(),
-        format!(
-            "`calibrate()` takes {} steps and accepts offsets within {} of the nominal one; {precharge}.",
-            1_u32 << inverter.calibration_log2,
-            amperes(inverter.offset_tolerance)
-        ),
-        start(spec, design),
-        format!(
-            "A phase current above {} trips the drive.",
-            engineering(inverter.trip_current, "A")
-        ),
-    ];
+    format!(
+        "`calibrate()` takes {} steps and accepts offsets within {} of the nominal one; {precharge}.",
+        1_u32 << inverter.calibration_log2,
+        engineering(tolerance, "A")
+    )
+}
+
+/// What trips the drive, the bus apart, and what is bridged.
+fn trips(spec: &Spec) -> Vec<String> {
+    let inverter = &spec.inverter;
+    let mut lines = vec![format!(
+        "A phase current above {} trips the drive.",
+        engineering(inverter.trip_current, "A")
+    )];
     if let Some(periods) = spec.controller.common().residual_periods {
         lines.push(format!(
             "So do {periods} periods more with currents that do not follow the voltages than with ones that do."
@@ -157,19 +155,28 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             inverter.hall_glitches
         ));
     }
-    lines.push(match spec.brake_periods() {
+    lines
+}
+
+/// What `brake()` does, by the speed.
+fn brake(spec: &Spec) -> String {
+    match spec.brake_periods() {
         0 => "At any speed `brake()` shorts the motor, which takes at most `max_current` then."
             .to_owned(),
         periods => {
             let sector = FRAC_PI_3 * spec.motor.widest_sector();
-            let electrical = sector / (f64::from(periods) * inverter.t_s);
+            let electrical = sector / (f64::from(periods) * spec.inverter.t_s);
             format!(
                 "Up to {} `brake()` shorts the motor; above, it opposes the rotation.",
                 rpm(electrical / f64::from(spec.motor.pole_pairs))
             )
         }
-    });
-    if let BusSource::Measured {
+    }
+}
+
+/// Fades, trips and limits of a measured bus.
+fn measured_bus(inverter: &InverterSpec) -> Vec<String> {
+    let BusSource::Measured {
         min,
         max,
         under,
@@ -178,34 +185,42 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
         motoring,
         ..
     } = inverter.bus
-    {
-        let levels = [(over, "above"), (under, "below")].into_iter();
-        let levels: Vec<String> = levels
-            .filter(|(level, _)| *level > 0.0)
-            .map(|(level, way)| format!("{way} {}", engineering(level, "V")))
-            .collect();
-        for (fade, what) in [(braking, "Braking"), (motoring, "Motoring")] {
-            if let Some(fade) = fade {
-                lines.push(format!(
-                    "{what} torque falls from {} to 0 at {} of the bus.",
-                    engineering(fade.full, "V"),
-                    engineering(fade.none, "V")
-                ));
-            }
-        }
-        if !levels.is_empty() {
+    else {
+        return vec![];
+    };
+    let mut lines = vec![];
+    for (fade, what) in [(braking, "Braking"), (motoring, "Motoring")] {
+        if let Some(fade) = fade {
             lines.push(format!(
-                "A bus voltage {} trips it, when `set_bus` tells so.",
-                levels.join(" or ")
+                "{what} torque falls from {} to 0 at {} of the bus.",
+                engineering(fade.full, "V"),
+                engineering(fade.none, "V")
             ));
         }
+    }
+    let levels = [(over, "above"), (under, "below")].into_iter();
+    let levels: Vec<String> = levels
+        .filter(|(level, _)| *level > 0.0)
+        .map(|(level, way)| format!("{way} {}", engineering(level, "V")))
+        .collect();
+    if !levels.is_empty() {
         lines.push(format!(
-            "The bus voltage is {} until the first `set_bus`, and clamped to {} to {}.",
-            engineering(inverter.v_bus, "V"),
-            engineering(min, "V"),
-            engineering(max, "V")
+            "A bus voltage {} trips it, when `set_bus` tells so.",
+            levels.join(" or ")
         ));
     }
+    lines.push(format!(
+        "The bus voltage is {} until the first `set_bus`, and clamped to {} to {}.",
+        engineering(inverter.v_bus, "V"),
+        engineering(min, "V"),
+        engineering(max, "V")
+    ));
+    lines
+}
+
+/// Limits of the bus current.
+fn bus_current(inverter: &InverterSpec) -> Vec<String> {
+    let mut lines = vec![];
     let BusCurrents { drawn, returned } = inverter.bus_currents;
     for (most, what) in [
         (drawn, "drawn from the supply"),
@@ -218,6 +233,22 @@ pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
             ));
         }
     }
+    lines
+}
+
+/// Start-up and trips, with the drive's numbers.
+pub fn supervision(spec: &Spec, design: &LoopDesign) -> Vec<String> {
+    let mut lines = vec![
+        String::new(),
+        "# Start-up and faults".to_owned(),
+        String::new(),
+        calibration(&spec.inverter),
+        start(spec, design),
+    ];
+    lines.extend(trips(spec));
+    lines.push(brake(spec));
+    lines.extend(measured_bus(&spec.inverter));
+    lines.extend(bus_current(&spec.inverter));
     lines.push("What the supervisor cannot see: `hexagen::Supervisor`.".to_owned());
     lines
 }

@@ -4,6 +4,7 @@
 //! checked beyond the spelling of values. What could not be read is kept as a diagnostic, so that
 //! the checks report it together with everything else.
 
+use super::alternatives::same_quantity;
 pub use super::basis::Basis;
 use super::units::Unit;
 use crate::diagnostics::{Diagnostic, Location, catalogue};
@@ -209,7 +210,7 @@ impl Section {
         self.fields.retain(|field| {
             !others
                 .iter()
-                .any(|other| super::schema::same_quantity(&other.name, &field.name))
+                .any(|other| same_quantity(&other.name, &field.name))
         });
     }
 

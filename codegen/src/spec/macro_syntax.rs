@@ -5,6 +5,7 @@
 
 use super::ast::{Board, Field, Name, Section, SpecAst, Value};
 use super::board_library::library_file;
+use super::field_rule::FieldRule;
 use super::value::{parse_value, plain_number, unreadable};
 use super::{load_motor_file, schema};
 use crate::diagnostics::{Anchors, Diagnostic, Diagnostics, Location, catalogue};
@@ -210,7 +211,7 @@ impl Entry {
         let head = &self.tokens[..1];
         if value.is_empty() {
             let name = name.to_string();
-            let examples = schema::examples(&name, &[]);
+            let examples = schema::field(&name).examples(&[]);
             return Err(catalogue::missing_value(&location(head), &name, &examples));
         }
         // `a: 1 ohm b: 2 H`: the comma in between was forgotten.
@@ -323,7 +324,7 @@ fn read_controller(
         kind => (kind, TokenStream::new()),
     };
     let kind_location = location(kind);
-    let word = parse_value("kind", &text_of(kind), &kind_location);
+    let word = parse_value(schema::field("kind"), &text_of(kind), &kind_location);
     if kind.is_empty() || !matches!(word, Value::Word(_)) {
         return Err(expected_section(value, "controller"));
     }
@@ -356,7 +357,7 @@ fn read_fields(
     for entry in entries(tokens) {
         match entry.split() {
             Ok((name, head, value)) => section.fields.push(Field {
-                value: read_value(&name, value),
+                value: read_value(schema::field(&name), value),
                 name,
                 name_location: location(head),
                 location: location(value),
@@ -371,14 +372,14 @@ fn read_fields(
     Ok(())
 }
 
-fn read_value(field: &str, tokens: &[TokenTree]) -> Value {
+fn read_value(field: FieldRule, tokens: &[TokenTree]) -> Value {
     let at = location(tokens);
     if let [TokenTree::Literal(literal)] = tokens {
         let written = literal.to_string();
         let literal = TokenTree::from(literal.clone());
         if let Ok(text) = syn::parse2::<syn::LitStr>(literal.clone().into()) {
             // Quotes are for text: in the macro all else stands as tokens.
-            return if schema::is_text(field) {
+            return if field.is_text() {
                 parse_value(field, &text.value(), &at)
             } else {
                 unreadable(field, &written, &at)

@@ -7,6 +7,7 @@
 #![doc = include_str!("options.md")]
 #![doc = include_str!("units.md")]
 
+mod alternatives;
 pub mod ast;
 mod basis;
 mod board;
@@ -14,6 +15,7 @@ mod board_library;
 pub(crate) mod check;
 pub(crate) mod controller;
 mod emf_shape;
+mod field_rule;
 pub(crate) mod health;
 mod load;
 mod macro_syntax;
@@ -21,6 +23,7 @@ mod model;
 mod normalised;
 mod option_texts;
 mod options;
+pub(crate) mod reader;
 mod rule;
 pub(crate) mod schema;
 mod sensing;

@@ -1,7 +1,7 @@
 //! Texts about the options: the program's help, and the page `options.md`, which a test writes.
 
-use super::check::reader::quantity_text;
 use super::controller::{self, KINDS};
+use super::reader::quantity_text;
 use super::rule::{Kind, Preset, Rule};
 use super::words::Word;
 use crate::diagnostics::significant;
@@ -103,6 +103,7 @@ mod tests {
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
     use crate::spec::rule::{Kind, Preset, Rule};
+    use crate::spec::schema;
     use crate::spec::value::parse_value;
     use std::path::Path;
 
@@ -183,7 +184,7 @@ mod tests {
         for rule in KINDS.iter().flat_map(controller::Kind::rules) {
             assert!(!rule.about.is_empty(), "{}", rule.name);
             let value = match rule.preset {
-                Preset::Value(text) => parse_value(rule.name, text, &at),
+                Preset::Value(text) => parse_value(schema::field(rule.name), text, &at),
                 Preset::Rule(text) => {
                     assert!(!text.is_empty(), "{}", rule.name);
                     continue;

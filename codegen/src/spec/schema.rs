@@ -3,10 +3,12 @@
 //! The limits catch wrong units and decimal points; they are wider than any motor that this crate
 //! is made for. The reference table for users is the documentation of [`crate::spec`].
 
-use super::ast::Basis;
+use super::ast::Field;
 use super::controller;
+use super::field_rule::FieldRule;
 use super::rule::{Kind, Rule, integer, plain, quantity, text, word};
 use super::units::Dimension as D;
+use crate::diagnostics::{Collector, catalogue};
 
 /// 1 rpm in rad/s.
 const RPM: f64 = std::f64::consts::PI / 30.0;
@@ -142,107 +144,21 @@ fn fields() -> impl Iterator<Item = (&'static str, &'static Rule)> {
     motor.chain(inverter).chain(options)
 }
 
-/// Fields that state one quantity in two ways.
-const ALTERNATIVES: [[&str; 2]; 11] = [
-    ["pole_pairs", "poles"],
-    ["back_emf", "speed_constant"],
-    ["f_pwm", "sampling_time"],
-    ["timer_clock", "timer_period"],
-    ["adc_range", "adc_gain"],
-    ["adc_range", "shunt"],
-    ["adc_range", "amplifier_gain"],
-    ["adc_range", "adc_reference"],
-    ["adc_gain", "shunt"],
-    ["adc_gain", "amplifier_gain"],
-    ["adc_gain", "adc_reference"],
-];
-
-/// Whether the field takes a list of values in brackets: one of each sensed phase in place of one for
-/// all, or of each Hall edge.
-pub(crate) fn takes_each(name: &str) -> bool {
-    matches!(
+/// A name with the rule of its field, in whichever section.
+pub(crate) fn field(name: &str) -> FieldRule<'_> {
+    let mut rules = fields().map(|(_, rule)| rule);
+    FieldRule {
         name,
-        "adc_gain" | "adc_offset" | "adc_inverted" | "hall_angles"
-    )
-}
-
-/// Whether the one field replaces the other.
-pub(crate) fn same_quantity(one: &str, other: &str) -> bool {
-    one == other
-        || ALTERNATIVES
-            .iter()
-            .any(|pair| one != other && pair.contains(&one) && pair.contains(&other))
-}
-
-/// The rule of a field, in whichever section.
-fn find(name: &str) -> Option<&'static Rule> {
-    fields()
-        .map(|(_, rule)| rule)
-        .find(|rule| rule.name == name)
-}
-
-/// Whether the field takes free text.
-pub(crate) fn is_text(name: &str) -> bool {
-    find(name).is_some_and(|rule| matches!(rule.kind, Kind::Text))
-}
-
-/// The quantities that the field takes; none for other kinds.
-pub(crate) fn dimensions(name: &str) -> &'static [D] {
-    match find(name).map(|rule| rule.kind) {
-        Some(Kind::Quantity { dimensions, .. }) => dimensions,
-        _ => &[],
+        rule: rules.find(|rule| rule.name == name),
     }
 }
 
 /// A field that takes this quantity.
 #[cfg(test)]
 pub(crate) fn field_of(dimension: D) -> &'static str {
-    let mut takers = fields().filter(|(_, rule)| dimensions(rule.name).contains(&dimension));
+    let mut takers =
+        fields().filter(|(_, rule)| field(rule.name).dimensions().contains(&dimension));
     takers.next().map_or("none", |(_, rule)| rule.name)
-}
-
-/// An example of the field's value.
-pub(crate) fn example(name: &str) -> &'static str {
-    find(name).map_or("20 A", |rule| rule.example)
-}
-
-/// Examples of the field's value, one for each possible basis, so that no basis is suggested over
-/// another. `named`: the basis words of the given value.
-pub(crate) fn examples(name: &str, named: &[Basis]) -> Vec<String> {
-    let example = example(name);
-    let references = references(name);
-    let Some((own, _)) = references
-        .iter()
-        .find(|(basis, _)| example.contains(basis.word()))
-    else {
-        return vec![example.to_owned()];
-    };
-    let is_named = references.iter().any(|(basis, _)| named.contains(basis));
-    references
-        .iter()
-        .filter(|(basis, _)| !is_named || named.contains(basis))
-        .map(|(basis, _)| example.replace(own.word(), basis.word()))
-        .collect()
-}
-
-/// The possible bases of the field's value with their meanings; empty where there is no choice.
-pub(crate) fn references(name: &str) -> &'static [(Basis, &'static str)] {
-    match name {
-        "resistance" | "inductance" => &[
-            (Basis::PerPhase, "of one winding"),
-            (Basis::LineToLine, "between two terminals"),
-        ],
-        "back_emf" => &[
-            (Basis::Phase, "of one phase"),
-            (Basis::LineToLine, "between two terminals"),
-        ],
-        "torque_constant" => &[
-            (Basis::BlockMean, "per ampere of block commutation"),
-            (Basis::PerPeakAmpere, "per ampere of the current's peak"),
-            (Basis::PerRmsAmpere, "per ampere of its root mean square"),
-        ],
-        _ => &[],
-    }
 }
 
 /// The section that has a field of this name.
@@ -252,9 +168,19 @@ pub fn section_of(name: &str) -> Option<&'static str> {
         .map(|(section, _)| section)
 }
 
+/// Reports a field of another section than `section`; returns whether it did.
+pub(crate) fn misplaced(section: &str, field: &Field, errors: &mut Collector) -> bool {
+    let right = section_of(&field.name);
+    if let Some(right) = right {
+        let (at, name) = (&field.name_location, &field.name);
+        errors.push(catalogue::misplaced_field(at, section, name, right));
+    }
+    right.is_some()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{example, fields, same_quantity, section_of};
+    use super::{FieldRule, field, fields, section_of};
 
     #[test]
     fn a_name_belongs_to_one_section() {
@@ -265,11 +191,24 @@ mod tests {
         }
     }
 
+    /// Messages about a controller's option are the same by its own rule and by the name alone.
+    #[test]
+    fn rules_of_a_name_have_one_example_and_kind() {
+        for (_, rule) in fields() {
+            let first = field(rule.name);
+            assert_eq!(first.example(), rule.example, "{}", rule.name);
+            let quantities = FieldRule {
+                name: rule.name,
+                rule: Some(rule),
+            };
+            assert_eq!(first.dimensions(), quantities.dimensions(), "{}", rule.name);
+            assert_eq!(first.is_text(), quantities.is_text(), "{}", rule.name);
+        }
+    }
+
     #[test]
     fn lookups() {
         assert_eq!(section_of("modulation"), Some("controller"));
-        assert_eq!(example("bus_voltage"), "48 V");
-        assert!(same_quantity("f_pwm", "sampling_time"));
-        assert!(!same_quantity("f_pwm", "timer_clock"));
+        assert_eq!(field("bus_voltage").example(), "48 V");
     }
 }

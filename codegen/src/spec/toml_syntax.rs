@@ -8,6 +8,7 @@
 
 use super::ast::{Board, BoardFile, Field, Name, Section, SpecAst, Value};
 use super::board_library::{BOARDS, file_of};
+use super::field_rule::FieldRule;
 use super::schema;
 use super::value::{free_text, no_text, parse_value, plain_number, unreadable};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
@@ -178,7 +179,7 @@ impl File<'_> {
             section.fields.push(Field {
                 name: name.to_owned(),
                 name_location: self.key(table.key(name), item),
-                value: self.read_value(name, item, &location),
+                value: self.read_value(schema::field(name), item, &location),
                 location,
                 assumed: None,
             });
@@ -190,7 +191,7 @@ impl File<'_> {
             let Some(text) = item.as_str() else {
                 continue;
             };
-            match free_text(key, text, &self.span(item.span())) {
+            match free_text(schema::field(key), text, &self.span(item.span())) {
                 Ok(text) => ast.source.push((key.to_owned(), text)),
                 Err(error) => ast.malformed.push(error),
             }
@@ -256,17 +257,17 @@ impl File<'_> {
         let (Some(value), Some((reason, reason_location))) = (value, reason) else {
             let given = value.or(Some(item)).and_then(Item::as_str);
             let values = given.map_or_else(
-                || schema::examples(name, &[]),
+                || schema::field(name).examples(&[]),
                 |given| vec![given.to_owned()],
             );
             return Err(catalogue::assumption(&name_location, name, &values));
         };
-        let reason = free_text(name, reason, &reason_location)?;
+        let reason = free_text(schema::field(name), reason, &reason_location)?;
         let location = self.span(value.span());
         Ok(Field {
             name: name.to_owned(),
             name_location,
-            value: self.read_value(name, value, &location),
+            value: self.read_value(schema::field(name), value, &location),
             location,
             assumed: Some(reason),
         })
@@ -324,9 +325,9 @@ impl File<'_> {
         None
     }
 
-    fn read_value(&self, field: &str, item: &Item, at: &Location) -> Value {
+    fn read_value(&self, field: FieldRule, item: &Item, at: &Location) -> Value {
         let unreadable = |given: &str| {
-            if schema::is_text(field) {
+            if field.is_text() {
                 no_text(field, given, at)
             } else {
                 unreadable(field, given, at)
@@ -338,10 +339,10 @@ impl File<'_> {
             Some(number @ (toml_edit::Value::Integer(_) | toml_edit::Value::Float(_))) => {
                 plain_number(field, self.written(number), at)
             }
-            Some(toml_edit::Value::Boolean(flag)) if !schema::is_text(field) => {
+            Some(toml_edit::Value::Boolean(flag)) if !field.is_text() => {
                 Value::Word(flag.value().to_string())
             }
-            Some(array @ toml_edit::Value::Array(list)) if !schema::is_text(field) => {
+            Some(array @ toml_edit::Value::Array(list)) if !field.is_text() => {
                 let numbers: Option<Vec<i64>> = list
                     .iter()
                     .map(|number| {
@@ -351,7 +352,7 @@ impl File<'_> {
                     .collect();
                 match numbers {
                     Some(numbers) => Value::Integers(numbers),
-                    None if schema::takes_each(field) => self.read_each(field, list, at),
+                    None if field.takes_each() => self.read_each(field, list, at),
                     None => unreadable(self.written(array)),
                 }
             }
@@ -361,7 +362,7 @@ impl File<'_> {
     }
 
     /// A value of each sensed phase.
-    fn read_each(&self, field: &str, list: &toml_edit::Array, at: &Location) -> Value {
+    fn read_each(&self, field: FieldRule, list: &toml_edit::Array, at: &Location) -> Value {
         let mut values = vec![];
         for item in list {
             let item = Item::Value(item.clone());

@@ -4,7 +4,7 @@
 //! first. White space never matters.
 
 use super::ast::{Basis, Number, Value};
-use super::schema;
+use super::field_rule::FieldRule;
 use super::units::{Unit, in_letters};
 use crate::diagnostics::{Diagnostic, Location, catalogue};
 
@@ -15,9 +15,9 @@ enum Lexeme {
     Symbol(char),
 }
 
-/// Reads the value of `field` (for its example in messages) from `text`.
-pub(super) fn parse_value(field: &str, text: &str, at: &Location) -> Value {
-    if schema::is_text(field) {
+/// Reads the value of `field` from `text`.
+pub(super) fn parse_value(field: FieldRule, text: &str, at: &Location) -> Value {
+    if field.is_text() {
         return match free_text(field, text, at) {
             Ok(text) => Value::Text(text),
             Err(error) => Value::Malformed(Box::new(error)),
@@ -29,20 +29,20 @@ pub(super) fn parse_value(field: &str, text: &str, at: &Location) -> Value {
 /// Free text in one line. Texts become comments of emitted code, so characters that compilers
 /// reject there are rejected here: control characters and those that change the direction of
 /// writing (rustc's lint `text_direction_codepoint_in_literal`).
-pub(super) fn free_text(field: &str, text: &str, at: &Location) -> Result<String, Diagnostic> {
+pub(super) fn free_text(field: FieldRule, text: &str, at: &Location) -> Result<String, Diagnostic> {
     let is_forbidden = |c: char| {
         matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
             || (c.is_control() && !c.is_whitespace())
     };
     match (1..).zip(text.chars()).find(|(_, c)| is_forbidden(*c)) {
-        Some((position, c)) => Err(catalogue::forbidden_character(at, field, c, position)),
+        Some((position, c)) => Err(catalogue::forbidden_character(at, field.name, c, position)),
         None => Ok(text.split_whitespace().collect::<Vec<_>>().join(" ")),
     }
 }
 
 /// A number of the given digits without unit.
-pub(super) fn plain_number(field: &str, digits: &str, at: &Location) -> Value {
-    if schema::is_text(field) {
+pub(super) fn plain_number(field: FieldRule, digits: &str, at: &Location) -> Value {
+    if field.is_text() {
         return no_text(field, digits, at);
     }
     match number(digits) {
@@ -57,19 +57,19 @@ pub(super) fn plain_number(field: &str, digits: &str, at: &Location) -> Value {
 }
 
 /// Another kind of value where the field takes text.
-pub(super) fn no_text(field: &str, given: &str, at: &Location) -> Value {
-    let examples = schema::examples(field, &[]);
+pub(super) fn no_text(field: FieldRule, given: &str, at: &Location) -> Value {
+    let examples = field.examples(&[]);
     Value::Malformed(Box::new(catalogue::wrong_kind(
-        at, field, given, "text", &examples,
+        at, field.name, given, "text", &examples,
     )))
 }
 
 /// A value that cannot be read.
-pub(super) fn unreadable(field: &str, text: &str, at: &Location) -> Value {
+pub(super) fn unreadable(field: FieldRule, text: &str, at: &Location) -> Value {
     Value::Malformed(Box::new(malformed(field, text, at)))
 }
 
-fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
+fn read(field: FieldRule, text: &str, at: &Location) -> Result<Value, Diagnostic> {
     let lexemes = lex(&in_letters(text));
     let (sign, unsigned) = match lexemes.as_slice() {
         [Lexeme::Symbol('-'), rest @ ..] => ("-", rest),
@@ -93,7 +93,7 @@ fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
         [Lexeme::Symbol('['), list @ .., Lexeme::Symbol(']')] if sign.is_empty() => {
             match read_list(list) {
                 Some(integers) => Ok(Value::Integers(integers)),
-                None if schema::takes_each(field) => read_each(field, list, at),
+                None if field.takes_each() => read_each(field, list, at),
                 None => Err(malformed(field, text, at)),
             }
         }
@@ -104,8 +104,8 @@ fn read(field: &str, text: &str, at: &Location) -> Result<Value, Diagnostic> {
     }
 }
 
-fn malformed(field: &str, text: &str, at: &Location) -> Diagnostic {
-    catalogue::malformed_value(at, field, text, &schema::examples(field, &[]))
+fn malformed(field: FieldRule, text: &str, at: &Location) -> Diagnostic {
+    catalogue::malformed_value(at, field.name, text, &field.examples(&[]))
 }
 
 /// Whether a number is of another base than ten, such as `0x1F`.
@@ -183,7 +183,7 @@ fn number_length(text: &str) -> usize {
 
 /// Unit and basis words behind a number: the longest known unit, then basis words.
 fn read_unit(
-    field: &str,
+    field: FieldRule,
     text: &str,
     digits: &str,
     lexemes: &[Lexeme],
@@ -191,8 +191,10 @@ fn read_unit(
 ) -> Result<(Option<Unit>, Vec<Basis>), Diagnostic> {
     let given = |lexemes: &[Lexeme]| format!("{digits} {}", spelt(lexemes));
     if let Some(signs) = stray_signs(lexemes) {
-        let examples = schema::examples(field, &named(lexemes));
-        return Err(catalogue::stray_signs(at, field, text, &signs, &examples));
+        let examples = field.examples(&named(lexemes));
+        return Err(catalogue::stray_signs(
+            at, field.name, text, &signs, &examples,
+        ));
     }
     let longest = (1..=lexemes.len())
         .rev()
@@ -212,28 +214,28 @@ fn read_unit(
     if let Some(readings) = Unit::readings(&written(unknown)) {
         return Err(catalogue::ambiguous_unit(
             at,
-            field,
+            field.name,
             &given(unknown),
             &symbol,
             readings,
         ));
     }
-    let takes_basis = !schema::references(field).is_empty();
+    let takes_basis = !field.references().is_empty();
     if unit.is_some() && takes_basis && rest.iter().all(is_part_of_word) {
         let (word, remedy) = basis_remedy(field, rest);
         return Err(catalogue::unknown_basis(
             at,
-            field,
+            field.name,
             &given(lexemes),
             &word,
             &remedy,
         ));
     }
-    let nearest = Unit::nearest(&symbol, schema::dimensions(field));
-    let examples = schema::examples(field, &named(lexemes));
+    let nearest = Unit::nearest(&symbol, field.dimensions());
+    let examples = field.examples(&named(lexemes));
     Err(catalogue::unknown_unit(
         at,
-        field,
+        field.name,
         &given(unknown),
         &symbol,
         nearest,
@@ -365,13 +367,14 @@ fn is_part_of_word(lexeme: &Lexeme) -> bool {
 }
 
 /// What is unknown of the words behind a unit, and the choice that there is.
-fn basis_remedy(field: &str, lexemes: &[Lexeme]) -> (String, String) {
-    let words: Vec<(&str, &str)> = schema::references(field)
+fn basis_remedy(field: FieldRule, lexemes: &[Lexeme]) -> (String, String) {
+    let words: Vec<(&str, &str)> = field
+        .references()
         .iter()
         .map(|(basis, meaning)| (basis.word(), *meaning))
         .collect();
     let mut remedy = format!("write {}", catalogue::with_meanings(&words));
-    if field == "back_emf" {
+    if field.name == "back_emf" {
         remedy.push_str(", with `peak` (the amplitude) or `rms`");
     }
     let unknown: Vec<Lexeme> = lexemes
@@ -406,7 +409,7 @@ fn read_list(lexemes: &[Lexeme]) -> Option<Vec<i64>> {
 }
 
 /// `[19.5 mA/count, 19.7 mA/count]` without its brackets: a value of each sensed phase.
-fn read_each(field: &str, lexemes: &[Lexeme], at: &Location) -> Result<Value, Diagnostic> {
+fn read_each(field: FieldRule, lexemes: &[Lexeme], at: &Location) -> Result<Value, Diagnostic> {
     let items = lexemes.split(|lexeme| *lexeme == Lexeme::Symbol(','));
     let items = items.filter(|item| !item.is_empty());
     let values = items.map(|item| match read(field, &written(item), at)? {
@@ -433,10 +436,11 @@ mod tests {
     use super::parse_value;
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
+    use crate::spec::schema;
 
     fn parse(field: &str, text: &str) -> Value {
         parse_value(
-            field,
+            schema::field(field),
             text,
             &Location::File {
                 file: "t".into(),

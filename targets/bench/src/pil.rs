@@ -228,7 +228,8 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<i32> {
 pub mod tests {
     use super::*;
     use hexagen::{Drive, Fault, Legs, Sample};
-    use hexagen_firmware::session::{Broken, Link, replay, serve};
+    use hexagen_firmware::link::{Broken, Link};
+    use hexagen_firmware::session::{replay, serve};
     use hexagen_firmware::{Drives, StepFn, Subject, Supervised};
     use std::cell::Cell;
 

@@ -1,6 +1,6 @@
 //! The list of a firmware's drives, and their step functions in the ELF.
 
-use crate::session::{Broken, Link};
+use crate::link::{Broken, Link};
 use crate::wire::Task;
 use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 

@@ -1,8 +1,9 @@
 //! The body of a control interrupt, and the counter of a whole one.
 
 use crate::counter::interrupt_step;
+use crate::link::{Broken, Link};
 use crate::registers::Registers;
-use crate::session::{Broken, Link, measure};
+use crate::session::measure;
 use crate::wire::{HEADER, Mode, RECORD, Record, Task};
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, ControlLoop, Legs, SetPoint};

@@ -13,6 +13,7 @@ mod counter;
 pub mod demonstration;
 mod drives;
 pub mod interrupt;
+pub mod link;
 pub mod peers;
 mod registers;
 #[cfg(target_os = "none")]

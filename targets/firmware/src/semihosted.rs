@@ -1,7 +1,8 @@
 //! The emulator's access to files of the host: semihosting.
 
 use crate::drives::Drives;
-use crate::session::{Broken, Link, serve};
+use crate::link::{Broken, Link};
+use crate::session::serve;
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 use semihosting::{eprintln, process};

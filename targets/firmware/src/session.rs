@@ -2,41 +2,12 @@
 
 use crate::counter::{count, sound, trace};
 use crate::drives::{Drives, StepFn};
+use crate::link::{Broken, Link};
 use crate::peers::Peer;
-use crate::subject::Subject;
+use crate::subject::{MOST_WORDS, Subject};
 use crate::supervised::{Supervised, step_supervised};
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
 use hexagen::{Control, Drive, Legs, Sample};
-
-/// Maximum number of state words of a drive.
-pub(crate) const MOST_WORDS: usize = 64;
-
-/// Input and output of a session.
-pub trait Link {
-    /// Fills the front of `bytes`; returns how many, fewer than requested only at the end of the
-    /// input.
-    ///
-    /// # Errors
-    /// If the input cannot be read.
-    fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Broken>;
-
-    /// Writes all bytes.
-    ///
-    /// # Errors
-    /// If the output cannot be written.
-    fn write(&mut self, bytes: &[u8]) -> Result<(), Broken>;
-}
-
-/// The exchange ended early.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Broken {
-    /// Input or output failed.
-    Link,
-    /// The input is not a task or record.
-    Format,
-    /// Instructions cannot be counted here: the session does not run on a core of its own.
-    Uncounted,
-}
 
 /// Serves one task on the drives of this firmware.
 ///

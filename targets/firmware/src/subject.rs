@@ -1,8 +1,10 @@
 //! A drive for replay, in Rust or in C.
 
-use crate::session::MOST_WORDS;
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Fault, Legs, State, Supervisor};
+
+/// Maximum number of state words of a drive.
+pub(crate) const MOST_WORDS: usize = 64;
 
 /// A drive for replay, without its step function.
 pub trait Subject {

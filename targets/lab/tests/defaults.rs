@@ -1,11 +1,10 @@
 //! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
 
 use hexagen_codegen::spec::HallCapture;
-use hexagen_lab::engine::{MotorSource, PlantOptions, Prepared, SelectedMotor, prepare};
+use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::motors::{Limit, RatedPoint, SPEEDS, degrees_per_period, greatest_ripple};
-use hexagen_tests::random_motor::RandomMotor;
+use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
-use std::env;
 
 /// Points at which a default drive is not right: motor, speed in percent. Control begins at the
 /// demanded torque, whatever the speed.
@@ -63,7 +62,7 @@ fn every_library_motor_is_right_by_default() {
     assert!(unexpected.is_empty(), "{unexpected:#?}");
 }
 
-/// Random motors, in a push and where `HEXAGEN_WHOLE_PRODUCTS` is set, as in the nightly run.
+/// Random motors, in a push and in the nightly run.
 const DRAWN: [usize; 2] = [20, 200];
 
 /// Electrical degrees in a control period at rated speed, up to which a drive is right.
@@ -84,19 +83,11 @@ fn swing(drive: &Prepared) -> f64 {
 /// Nearly all points are right that do not end at the bus.
 #[test]
 fn random_motors_are_right_by_default() {
-    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
-    let wanted = DRAWN[usize::from(is_whole)];
-    // Motors with an edge timer that the generator takes, and periods short enough for them.
-    let drawn = (0..).filter_map(|seed: u64| {
-        let text = RandomMotor::new(seed).toml();
-        let name = format!("motor {seed}");
-        let file = format!("{name}.toml");
-        let drive = prepare(&MotorSource { name, file, text }, Some("pdcc")).ok()?;
+    // Motors with an edge timer, and periods short enough for them.
+    let drawn = random_drives(0, "pdcc", DRAWN, |drive| {
         let is_timed = matches!(drive.spec.inverter.hall_capture, HallCapture::Timer { .. });
-        let is_fit = degrees_per_period(&drive.spec) <= FASTEST && swing(&drive) <= SWING;
-        (is_timed && is_fit).then_some(drive)
+        is_timed && degrees_per_period(&drive.spec) <= FASTEST && swing(drive) <= SWING
     });
-    let drawn: Vec<Prepared> = drawn.take(wanted).collect();
     let points = 16 * drawn.len();
     let wrong: Vec<(String, RatedPoint)> = drawn
         .par_iter()

@@ -8,9 +8,8 @@ use hexagen_lab::engine::{
 };
 use hexagen_lab::faults::{FaultStudy, Part, study};
 use hexagen_lab::plant::{Mechanics, Plant, PlantParams};
-use hexagen_tests::random_motor::RandomMotor;
+use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
-use std::env;
 
 /// The default drives with the watch.
 const LAWS: [&str; 2] = ["pdcc:residual_timeout=5ms", "pi-pwm:residual_timeout=5ms"];
@@ -181,19 +180,12 @@ fn no_deviating_motor_of_the_library_trips_in_steps_reversals_and_starts() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// Random motors, in a push and where `HEXAGEN_WHOLE_PRODUCTS` is set, as in the nightly run.
+/// Random motors, in a push and in the nightly run.
 const DRAWN: [usize; 2] = [6, 100];
 
 #[test]
 fn hardly_a_deviating_random_motor_trips() {
-    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
-    let drawn = (1000..).filter_map(|seed: u64| {
-        let text = RandomMotor::new(seed).toml();
-        let name = format!("motor {seed}");
-        let file = format!("{name}.toml");
-        prepare(&MotorSource { name, file, text }, Some(LAWS[0])).ok()
-    });
-    let drawn: Vec<Prepared> = drawn.take(DRAWN[usize::from(is_whole)]).collect();
+    let drawn = random_drives(1000, LAWS[0], DRAWN, |_| true);
     let found: Vec<(Fault, String)> = drawn.par_iter().flat_map_iter(trips_of).collect();
     // A motor whose current rises far in a period may trip by its current where L is low.
     let of_watch: Vec<_> = (found.iter())

@@ -1,11 +1,11 @@
 //! New parts of a text compared with earlier ones: units whole, or lines of known units.
 
-use crate::shape::{Shape, shape};
+use crate::shape::{Shape, shape, shape_in};
 use crate::units::{Unit, balance, units};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A unit's text; of a table the first row of each shape.
-fn abridged(unit: &Unit) -> String {
+pub fn abridged(unit: &Unit) -> String {
     let is_table = |line: &String| line.starts_with("static ") && !line.contains('(');
     if !unit.lines.iter().any(is_table) {
         return unit.text.clone() + "\n";
@@ -110,13 +110,13 @@ pub fn shapes_of_extracts(kind: &str, extracts: &str) -> BTreeSet<Shape> {
             let head = line.strip_prefix("~ ");
             name = head.map(|head| match head.split_once(": ") {
                 Some((name, line)) => {
-                    shown.insert((name.to_owned(), shape(line)));
+                    shown.insert((name.to_owned(), shape_in(name, line)));
                     name.to_owned()
                 }
                 None => head.to_owned(),
             });
         } else if let Some(name) = name.as_ref().filter(|_| line.starts_with("    ")) {
-            shown.insert((name.clone(), shape(line.trim())));
+            shown.insert((name.clone(), shape_in(name, line.trim())));
         } else {
             whole += line;
             whole.push('\n');

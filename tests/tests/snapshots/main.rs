@@ -1,9 +1,11 @@
 //! The generator's output, versioned: emitted Rust and C99, IR text and data sheets.
 //!
-//! In full: Rust of the paper's motor with each of the paper's controllers, C of two. Of its
-//! variants new units, and of known units the lines with a new shape. Of all motors and of the
-//! covering arrays the shapes of lines that appear nowhere above. A digest of every text reveals
-//! any other change: of numbers, of the order of lines, of function heads, of C's comments.
+//! In full: Rust and C of the paper's motor with the default controller. With another of the paper's
+//! controllers, C with one, all items, but names of those that an earlier drive has letter for letter
+//! (`// As in`). Of its variants new units, and of known units the lines with a new shape. Of all
+//! motors and of the covering arrays the shapes of lines that appear nowhere above. A digest of every
+//! text reveals any other change: of numbers, of the order of lines, of function heads, of the
+//! arguments of stages, of the width of products, of C's comments.
 //!
 //! In extracts `=` begins a drive, `+` new units, `~` lines of a known unit.
 //! `INSTA_UPDATE=always cargo test -p hexagen-tests --test snapshots` writes all of them; a person
@@ -11,12 +13,14 @@
 
 mod drives;
 mod extracts;
+mod items;
 mod prose;
 mod shape;
 mod units;
 
 use drives::{Drive, TEXTS};
 use extracts::{Shown, shapes_of_extracts};
+use items::{Earlier, without_names};
 use shape::Shape;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -28,11 +32,11 @@ use units::{Unit, units};
 /// Folder of the snapshots, relative to this file.
 const FOLDER: &str = "kept";
 
-/// Controllers whose Rust is kept in full.
-const IN_FULL_IN_RUST: [&str; 4] = ["fcs-mpc", "pdcc", "phcc", "pi-pwm"];
+/// Controllers whose Rust is kept item by item, the first in full.
+const ITEM_BY_ITEM_IN_RUST: [&str; 4] = ["pdcc", "fcs-mpc", "phcc", "pi-pwm"];
 
-/// Controllers whose C is kept in full.
-const IN_FULL_IN_C: [&str; 2] = ["pdcc", "fcs-mpc"];
+/// Controllers whose C is.
+const ITEM_BY_ITEM_IN_C: [&str; 2] = ["pdcc", "fcs-mpc"];
 
 /// All drives, generated once.
 static DRIVES: LazyLock<[Vec<Drive>; 3]> =
@@ -48,16 +52,23 @@ fn snapshots() -> BTreeMap<String, String> {
     let mut snapshots = BTreeMap::new();
     for kind in TEXTS {
         let [defaults, variants, others] = &*DRIVES;
-        let is_full = |drive: &&Drive| match kind {
-            "rust" => IN_FULL_IN_RUST.contains(&&*drive.name),
-            "c99" => IN_FULL_IN_C.contains(&&*drive.name),
-            _ => false,
+        let item_by_item: &[&str] = match kind {
+            "rust" => &ITEM_BY_ITEM_IN_RUST,
+            "c99" => &ITEM_BY_ITEM_IN_C,
+            _ => &[],
         };
+        let item_by_item = item_by_item
+            .iter()
+            .filter_map(|name| defaults.iter().find(|drive| drive.name == *name));
         let mut shown = Shown::default();
-        for drive in defaults.iter().filter(is_full) {
+        let mut earlier = Earlier::default();
+        for drive in item_by_item {
             shown.add(&units(kind, drive.text(kind)));
             let name = format!("{}.{kind}", drive.name);
-            snapshots.insert(name, drive.text(kind).to_owned());
+            snapshots.insert(
+                name,
+                earlier.differences(&drive.name, kind, drive.text(kind)),
+            );
         }
         let mut extracts = String::new();
         for drive in defaults.iter().chain(variants) {
@@ -146,7 +157,8 @@ fn every_line_of_every_drive_is_in_a_snapshot() {
                 if name.starts_with("variants.") || name.starts_with("others.") {
                     shapes_of_extracts(kind, text)
                 } else {
-                    units(kind, text).iter().flat_map(Unit::shapes).collect()
+                    let units = units(kind, &without_names(text));
+                    units.iter().flat_map(Unit::shapes).collect()
                 }
             })
             .collect();

@@ -10,7 +10,7 @@ pub struct Prose {
 impl Prose {
     /// Adds a line of prose, empty at the end of a paragraph.
     pub fn read(&mut self, line: &str) {
-        let is_row = line.starts_with(['|', '#', ' ', '`']) && !line.ends_with(['.', ',']);
+        let is_row = line.starts_with(['|', '#', ' ']) && !line.ends_with(['.', ',']);
         let is_range = line.starts_with("| `") && line.contains("` [");
         if is_range {
             // Only the stage: words and ranges are those of the IR.

@@ -3,8 +3,61 @@
 /// A unit's name and the shape of one of its lines.
 pub type Shape = (String, String);
 
+/// Units that call the stages.
+const CALLERS: [&str; 2] = ["step", "track"];
+
+/// The shape of a unit's line: masked, and of calls of stages without the arguments. These are what
+/// the stage's own lines read; a head has them, too.
+pub fn shape_in(unit: &str, line: &str) -> String {
+    let shape = shape(line);
+    if CALLERS.contains(&unit) {
+        without_arguments(&shape)
+    } else {
+        shape
+    }
+}
+
+/// A statement whose calls of stages have no arguments.
+fn without_arguments(statement: &str) -> String {
+    let (mut shape, mut rest) = (String::new(), statement);
+    while let Some(open) = rest.find('(') {
+        let (before, call) = rest.split_at(open);
+        shape += before;
+        let length = if is_stage(shape.rsplit(' ').next().unwrap_or_default()) {
+            call_length(call)
+        } else {
+            None
+        };
+        shape += if length.is_some() { "(..)" } else { "(" };
+        rest = &call[length.unwrap_or(1)..];
+    }
+    shape + rest
+}
+
+/// Whether a word before a bracket names a stage: no method, type or operator.
+fn is_stage(word: &str) -> bool {
+    let operators = ["row", "lookup", "select"];
+    let families = ["hexagen_", "mul_", "divide"];
+    word.starts_with(|first: char| first.is_ascii_lowercase())
+        && word
+            .chars()
+            .all(|letter| letter.is_ascii_lowercase() || letter == '_')
+        && !operators.contains(&word)
+        && !families.iter().any(|family| word.starts_with(family))
+}
+
+/// Length of a bracket, if it is closed.
+fn call_length(call: &str) -> Option<usize> {
+    let mut open = 0;
+    let end = call.char_indices().find(|(_, sign)| {
+        open += i32::from(*sign == '(') - i32::from(*sign == ')');
+        open == 0
+    });
+    end.map(|(end, _)| end + 1)
+}
+
 /// A line with its numbers masked: of a quantity the prefix of its unit, too, fixed-point types,
-/// and names of vectors. The bus voltage, a constant or a word, is a word.
+/// names of vectors, and the width of a product. The bus voltage, a constant or a word, is a word.
 pub fn shape(line: &str) -> String {
     let mut shape = String::new();
     let mut rest = line;
@@ -25,7 +78,12 @@ pub fn shape(line: &str) -> String {
             rest = &rest[first.len_utf8()..];
         }
     }
-    shape.replace("V_BUS", "v_bus")
+    // How many numbers stand in a line of a table is its layout's.
+    while !shape.contains('(') && shape.contains("#, #, ") {
+        shape = shape.replace("#, #, ", "#, ");
+    }
+    // A product is narrow where the numbers are small.
+    shape.replace("V_BUS", "v_bus").replace("_narrow(", "(")
 }
 
 /// Length of the number at the beginning of a text: `-1_405.5e-3`.
@@ -76,7 +134,7 @@ fn numbered_name(text: &str) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::shape;
+    use super::{shape, shape_in};
 
     #[test]
     fn numbers_are_masked_and_words_are_not() {
@@ -89,8 +147,33 @@ mod tests {
             ),
             ("GAIN: I1F31 of V12", "GAIN: # of #"),
             ("a - 1 < 2..3", "a - # < #..#"),
+            ("0, 5, 3, 4,", "#, #,"),
+            ("mul_round_narrow(K_R, i_a, 16)", "mul_round(K_R, i_a, #)"),
         ] {
             assert_eq!(shape(line), expected);
+        }
+    }
+
+    #[test]
+    fn a_call_of_a_stage_is_its_name() {
+        for (line, expected) in [
+            (
+                "let [a, b] = model_emf(theta, [c, d]);",
+                "let [a, b] = model_emf(..);",
+            ),
+            (
+                "begins ? follow(i_a, -(i_b)) : left",
+                "begins ? follow(..) : left",
+            ),
+            (
+                "let j = set_point.current();",
+                "let j = set_point.current();",
+            ),
+            ("row(&ROWS, vector).legs", "row(&ROWS, vector).legs"),
+            ("limit( state, [u] ) } else {", "limit(..) } else {"),
+        ] {
+            assert_eq!(shape_in("step", line), expected);
+            assert_eq!(shape_in("model_emf", line), line);
         }
     }
 }

@@ -2,7 +2,7 @@
 //! and these into lines: statements and sentences, however broken and indented.
 
 use crate::prose::Prose;
-use crate::shape::{Shape, shape};
+use crate::shape::{Shape, shape, shape_in};
 
 /// A named piece of an emitted text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl Unit {
 
     /// The shape of each of its lines.
     pub fn shapes(&self) -> impl Iterator<Item = Shape> {
-        let shapes = self.lines.iter().map(|line| shape(line));
+        let shapes = self.lines.iter().map(|line| shape_in(&self.name, line));
         shapes.map(|shape| (self.name.clone(), shape))
     }
 }
@@ -34,9 +34,17 @@ impl Unit {
 /// Units of every kind of text; of C only the code, since Rust has the same comments.
 pub fn units(kind: &str, text: &str) -> Vec<Unit> {
     match kind {
-        "c99" => with_definitions_joined(&of_code(&without_comments(text))),
+        "c99" => with_definitions_joined(&items(kind, text)),
         "ir" => of_program(text),
         "datasheet" => of_sheet(text),
+        _ => items(kind, text),
+    }
+}
+
+/// Items of a text of code, as many as were emitted; of C without comments.
+pub fn items(kind: &str, text: &str) -> Vec<Unit> {
+    match kind {
+        "c99" => of_code(&without_comments(text)),
         _ => of_code(text),
     }
 }
@@ -218,7 +226,7 @@ fn code_lines(text: &[&str]) -> Vec<String> {
     lines.iter().flat_map(|line| by_element(line)).collect()
 }
 
-/// A long list by element, except a function's head, whose parameters are used in its body; any
+/// A long list, and the tracked words, by element, except a function's head, whose parameters are used in its body; any
 /// other line unchanged.
 fn by_element(line: &str) -> Vec<String> {
     const LONG: usize = 6;
@@ -228,7 +236,8 @@ fn by_element(line: &str) -> Vec<String> {
     }
     let is_list = line.starts_with("use ") || line.contains(": ") && !line.contains('(');
     let elements = line.split_inclusive([',', ':']).map(str::trim);
-    if is_list && elements.clone().count() > LONG {
+    let is_rotor = line.starts_with("let Rotor {") || line.starts_with("Rotor {");
+    if is_rotor || is_list && elements.clone().count() > LONG {
         elements
             .filter(|element| !element.is_empty())
             .map(str::to_owned)

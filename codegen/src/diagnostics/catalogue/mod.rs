@@ -5,13 +5,19 @@
 //! (`at_most`, `at_least`). Field names stand in backticks.
 
 mod controller;
+mod currents;
 mod design;
 mod drive;
+mod part;
 mod structure;
+mod timing;
 mod values;
 
 pub use controller::*;
+pub use currents::*;
 pub use design::*;
 pub use drive::*;
+pub use part::Part;
 pub use structure::*;
+pub use timing::*;
 pub use values::*;

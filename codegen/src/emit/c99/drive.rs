@@ -1,10 +1,11 @@
-//! The public functions: init, step, setters and commands, from the law and the runtime.
+//! The public functions: init, step and setters, from the law and the runtime.
 
 use super::function::{Step, emit_setter};
 use super::layout::{INDENT, wrapped};
+use super::limits::limits_of;
 use super::names::{Names, number, typed_number};
 use crate::emit::path::SINGLE;
-use crate::interface::{Interface, Limits, ResidualWatch, SensedPhases, Sensor, Sensors, Unit};
+use crate::interface::{Interface, ResidualWatch, Unit};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
@@ -30,8 +31,8 @@ pub(super) fn where_defined(symbol: &str, code: &str) -> String {
 /// A public function.
 pub(super) struct Method {
     pub doc: Vec<String>,
-    head: String,
-    body: String,
+    pub head: String,
+    pub body: String,
 }
 
 impl Method {
@@ -45,11 +46,11 @@ impl Method {
     }
 }
 
-fn lines(lines: &[&str]) -> String {
+pub(super) fn lines(lines: &[&str]) -> String {
     lines.iter().map(|line| wrapped(INDENT, line)).collect()
 }
 
-fn doc(lines: &[&str]) -> Vec<String> {
+pub(super) fn doc(lines: &[&str]) -> Vec<String> {
     lines.iter().map(|&line| line.to_owned()).collect()
 }
 
@@ -63,7 +64,7 @@ impl Drive<'_> {
     }
 
     /// The set-point word that is 0 if nothing is demanded of the motor.
-    fn demand(&self) -> &'static str {
+    pub(super) fn demand(&self) -> &'static str {
         if self.has_speed() { "speed" } else { "current" }
     }
 
@@ -140,7 +141,7 @@ impl Drive<'_> {
         methods
     }
 
-    fn drive(&self) -> String {
+    pub(super) fn drive(&self) -> String {
         format!("{} *drive", self.names.prefix)
     }
 
@@ -284,27 +285,6 @@ impl Drive<'_> {
              {INDENT}if (rested.is_controlled) {{\n\
              {inner}return hexagen_period_of(rested, checked);\n{INDENT}}}\n"
         )
-    }
-
-    /// What was kept of a trip.
-    fn trip(&self) -> Method {
-        Method {
-            doc: doc(&[
-                "The control period in which the drive tripped, kept until a reset: true where there is one.",
-                "False while the drive is not tripped, and if a reset interrupts the call.",
-            ]),
-            head: format!(
-                "bool {}(const {}, {} *trip)",
-                self.names.public("trip"),
-                self.drive(),
-                self.names.trip_record()
-            ),
-            body: lines(&[
-                "const uint32_t number = drive->trip_number;",
-                "*trip = drive->trip;",
-                "return (number & 1U) != 0U && drive->trip_number == number;",
-            ]),
-        }
     }
 
     fn init(&self) -> Method {
@@ -492,95 +472,6 @@ impl Drive<'_> {
         })
     }
 
-    /// All methods besides start, step and setters.
-    fn commands(&self) -> [Method; 8] {
-        let publish = "drive->status = hexagen_status_word(&drive->supervisor);";
-        let command = |name: &str, text: &[&str], body: String| Method {
-            doc: doc(text),
-            head: format!("void {}({})", self.names.public(name), self.drive()),
-            body: body + &lines(&[publish]),
-        };
-        let inner = INDENT.repeat(2);
-        let reset = format!(
-            "{INDENT}if (hexagen_reset(&drive->supervisor, &limits)) {{\n\
-             {inner}drive->state = initial;\n{inner}drive->{} = 0;\n\
-             {inner}drive->trip_number = (drive->trip_number + 1U) & ~UINT32_C(1);\n{INDENT}}}\n",
-            self.demand()
-        );
-        let run = |name: &str| lines(&[&format!("hexagen_{name}(&drive->supervisor, &limits);")]);
-        let is_stale = if self.has_bus() {
-            "hexagen_bus_is_stale(&drive->bus)"
-        } else {
-            "false"
-        };
-        [
-            command(
-                "reset",
-                &[
-                    "Clears a trip and all control state, and sets the set-point to 0; keeps calibrated offsets.",
-                    "Ignored while calibrating and pre-charging. A start follows, without calibration and pre-charge: if the bootstrap capacitors need it, call `precharge()` right behind this. Each call begins the start anew. With a speed loop the set-point is the speed, and speed 0 brakes a turning rotor with up to the current limit.",
-                ],
-                reset,
-            ),
-            command(
-                "calibrate",
-                &[
-                    "Starts current-offset calibration: all legs off, the motor at rest. Pre-charge, if specified, a start and control with the",
-                    "present set-point follow by themselves. Ignored when tripped.",
-                ],
-                run("calibrate"),
-            ),
-            command(
-                "precharge",
-                &[
-                    "Starts bootstrap pre-charge: all lower switches on, which short-circuits a turning motor; a start, in which all legs are off, and control follow by themselves.",
-                    "Accepted during control, too: call it only at rest. Ignored when tripped, calibrating, coasting and braking, and if the specification has no pre-charge.",
-                ],
-                run("precharge"),
-            ),
-            command(
-                "coast",
-                &[
-                    "Turns all legs off on purpose, without a fault, until `resume()` or a reset.",
-                    "Above the speed at which the EMF reaches the bus voltage the diodes still brake the motor into the bus. Ignored when tripped, calibrating and pre-charging.",
-                ],
-                lines(&["hexagen_coast(&drive->supervisor);"]),
-            ),
-            command(
-                "brake",
-                &[
-                    "Slows the rotor down until `resume()` or a reset: all lower switches on where the motor takes no more than `max_current` that way;",
-                    "above that speed this current against the rotation, with a speed loop speed 0 within the current that is set, into the bus. In a start, once that is over. Ignored when tripped, calibrating and pre-charging.",
-                ],
-                lines(&["hexagen_brake(&drive->supervisor);"]),
-            ),
-            command(
-                "resume",
-                &[
-                    "Ends coasting and braking: control at set-point 0 follows, behind what is left of a start that they interrupted, with the rotor's angle and speed as they were followed meanwhile. Ignored if the drive does neither.",
-                ],
-                format!(
-                    "{INDENT}if (hexagen_resume(&drive->supervisor)) {{\n{inner}drive->{} = 0;\n{INDENT}}}\n",
-                    self.demand()
-                ),
-            ),
-            Method {
-                doc: doc(&[
-                    "Mode and fault of the drive after the last control period or call; may be called from any context.",
-                ]),
-                head: format!(
-                    "hexagen_status {}(const {})",
-                    self.names.public("status"),
-                    self.drive()
-                ),
-                body: lines(&[&format!(
-                    "return hexagen_status_of(drive->status, {is_stale});"
-                )]),
-            },
-            self.trip(),
-        ]
-    }
-
     /// The function that returns observation signals.
     pub(super) fn signals(&self) -> Method {
         Method {
@@ -649,62 +540,4 @@ impl Drive<'_> {
             },
         ]
     }
-}
-
-/// The runtime's macro for these limits, and its arguments with their names.
-fn limits_of(limits: &Limits) -> (&'static str, Vec<(String, &'static str)>) {
-    let mut all = arguments(limits).to_vec();
-    let Sensors { phases, second } = limits.sensors;
-    if limits.sensors == Sensors::AB {
-        return ("HEXAGEN_LIMITS", all);
-    }
-    let phases = match phases {
-        SensedPhases::Ab => "HEXAGEN_SENSED_AB",
-        SensedPhases::Bc => "HEXAGEN_SENSED_BC",
-        SensedPhases::Ca => "HEXAGEN_SENSED_CA",
-    };
-    let Sensor {
-        adc_inverted,
-        offset,
-        offsets: [least, most],
-    } = second.unwrap_or(Sensor {
-        adc_inverted: limits.adc_inverted,
-        offset: limits.offset,
-        offsets: limits.offsets,
-    });
-    all.extend([
-        (phases.to_owned(), "sensed"),
-        (format!("{adc_inverted}"), "second_inverted"),
-        (format!("{offset}"), "second_offset"),
-        (format!("{least}"), "second_least"),
-        (format!("{most}"), "second_most"),
-    ]);
-    ("HEXAGEN_LIMITS_OF", all)
-}
-
-/// The limits with their names, in the order of the runtime's macro.
-fn arguments(limits: &Limits) -> [(String, &'static str); 19] {
-    let [least, most] = limits.offsets;
-    let [low, high] = limits.currents;
-    [
-        (format!("{}", limits.adc_max), "adc_max"),
-        (format!("{}", limits.adc_inverted), "adc_inverted"),
-        (format!("{}", limits.current_bits), "current_bits"),
-        (format!("{}", limits.offset), "offset"),
-        (format!("{least}"), "offset_least"),
-        (format!("{most}"), "offset_most"),
-        (typed_number(limits.trip), "trip"),
-        (typed_number(low), "current_least"),
-        (typed_number(high), "current_most"),
-        (format!("{}", limits.calibration_log2), "calibration_log2"),
-        (format!("{}", limits.precharge_periods), "precharge_periods"),
-        (typed_number(limits.stall_periods), "stall_periods"),
-        (format!("{}", limits.hall_inverted), "hall_inverted"),
-        (format!("{}", limits.hall_glitches), "hall_glitches"),
-        (format!("UINT32_C({:#010x})", limits.sectors), "sectors"),
-        (typed_number(limits.brake_periods), "brake_periods"),
-        (format!("{}", limits.start_periods), "start_periods"),
-        (format!("{}", limits.bus_counts[0]), "bus_least"),
-        (format!("{}", limits.bus_counts[1]), "bus_most"),
-    ]
 }

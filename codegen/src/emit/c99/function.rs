@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, SINGLE, demands_read, inputs_used, kept, kept_at_rest, results, writes,
+    Kept, Part, SINGLE, demands_read, inputs_used, kept, kept_at_rest, writes,
 };
 use super::super::plan::Context;
 use super::super::signal::Shape;
@@ -134,25 +134,6 @@ impl<'a> StepFunctions<'a> {
         values.map(read).collect()
     }
 
-    /// The values from outside used by a part's calls and stores.
-    fn used(&self, part: Part, kept: &Kept<'_>) -> Vec<Value> {
-        let function = self.function();
-        let stages = self.stages(part).map(StageFunction::plan);
-        let mut used: Vec<Value> = stages
-            .flat_map(|plan| {
-                let guard = plan.stage.guard.as_ref().map(|guard| guard.condition);
-                let otherwise = plan.outcomes.iter().filter_map(|outcome| outcome.otherwise);
-                let arguments = plan.arguments.iter().copied();
-                arguments.chain(guard).chain(otherwise)
-            })
-            .collect();
-        used.extend(kept.words.iter().map(|&(_, value)| value));
-        if part == Part::Control {
-            used.extend(results(function));
-        }
-        used
-    }
-
     fn kept(&self, part: Part) -> Kept<'a> {
         let plans: Vec<_> = self
             .stages
@@ -219,8 +200,7 @@ impl<'a> StepFunctions<'a> {
     /// The tracking.
     fn track(&self) -> Entry {
         let kept = self.kept(Part::Tracking);
-        let used = self.used(Part::Tracking, &kept);
-        let mut body = self.inputs(used.into_iter()) + &self.body(Part::Tracking, &kept);
+        let mut body = self.inputs(kept.used.iter().copied()) + &self.body(Part::Tracking, &kept);
         let result = if self.has_rotor() {
             let names: Vec<String> = self.rotor.iter().map(|&value| self.local(value)).collect();
             body.push_str(&wrapped(
@@ -278,9 +258,8 @@ impl<'a> StepFunctions<'a> {
     /// A controlled period.
     fn control(&self) -> Entry {
         let kept = self.kept(Part::Control);
-        let used = self.used(Part::Control, &kept);
         let mut body = read_words(self.context.program, self.function(), self.names);
-        body.push_str(&self.inputs(used.into_iter()));
+        body.push_str(&self.inputs(kept.used.iter().copied()));
         body.push_str(&self.rotor_words(self.rotor.iter()));
         body.push_str(&self.body(Part::Control, &kept));
         body.push_str(&self.observation());

@@ -4,11 +4,13 @@
 //! C (`hexagen-c99`). Portable by construction: exact widths of 16 bits and more, no signed
 //! overflow, no right shift of a negative number. Nothing here can fail.
 
+mod commands;
 mod drive;
 mod expression;
 mod function;
 mod header;
 mod layout;
+mod limits;
 mod names;
 mod stage;
 

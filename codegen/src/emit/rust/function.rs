@@ -2,7 +2,7 @@
 
 use super::super::expression::Scope;
 use super::super::path::{
-    Kept, Part, SINGLE, demands_read, inputs_used, kept, kept_at_rest, results, writes,
+    Kept, Part, SINGLE, demands_read, inputs_used, kept, kept_at_rest, writes,
 };
 use super::super::plan::Context;
 use super::super::rows::WholeCommand;
@@ -113,25 +113,6 @@ impl<'a> StepFunctions<'a> {
         (reads.collect(), is_read)
     }
 
-    /// The values from outside used by a part's calls and stores.
-    fn used(&self, part: Part, kept: &Kept<'_>) -> Vec<Value> {
-        let function = self.function();
-        let stages = self.stages(part).map(StageFunction::plan);
-        let mut used: Vec<Value> = stages
-            .flat_map(|plan| {
-                let guard = plan.stage.guard.as_ref().map(|guard| guard.condition);
-                let otherwise = plan.outcomes.iter().filter_map(|outcome| outcome.otherwise);
-                let arguments = plan.arguments.iter().copied();
-                arguments.chain(guard).chain(otherwise)
-            })
-            .collect();
-        used.extend(kept.words.iter().map(|&(_, value)| value));
-        if part == Part::Control {
-            used.extend(results(function));
-        }
-        used
-    }
-
     /// Calls of a part's stages, and its new state words.
     fn body(&self, part: Part, kept: &Kept<'_>) -> Source {
         let calls = self.stages(part).map(StageFunction::call);
@@ -170,8 +151,7 @@ impl<'a> StepFunctions<'a> {
 
     fn track(&self) -> Source {
         let kept = self.kept(Part::Tracking);
-        let used = self.used(Part::Tracking, &kept);
-        let (inputs, has_inputs) = self.inputs(used.into_iter());
+        let (inputs, has_inputs) = self.inputs(kept.used.iter().copied());
         let has_state =
             self.reads_state(Part::Tracking) || !kept.words.is_empty() || !kept.reads.is_empty();
         let body = self.body(Part::Tracking, &kept);
@@ -240,8 +220,7 @@ impl<'a> StepFunctions<'a> {
 
     fn control(&self, whole: Option<&WholeCommand<'_>>) -> Source {
         let kept = self.kept(Part::Control);
-        let used = self.used(Part::Control, &kept);
-        let (inputs, has_inputs) = self.inputs(used.into_iter());
+        let (inputs, has_inputs) = self.inputs(kept.used.iter().copied());
         let has_state =
             self.reads_state(Part::Control) || !kept.words.is_empty() || !kept.reads.is_empty();
         let body = self.body(Part::Control, &kept);

@@ -120,6 +120,16 @@ struct Tracked<'b> {
     ahead: Option<Expr<'b>>,
 }
 
+/// The set-point in force.
+struct Demanded<'b> {
+    /// As a voltage word.
+    j: Expr<'b>,
+    /// The regulated speed, signed; with a speed loop only.
+    speed: Option<Expr<'b>>,
+    /// The regulator's integral or the slewed set-point, and its new value.
+    word: Option<(Memory<'b>, Expr<'b>)>,
+}
+
 /// State words and their new values.
 pub type Remembered<'b> = Vec<(Memory<'b>, Expr<'b>)>;
 
@@ -156,24 +166,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             None => sector_of(l, &tracked.sample),
         };
         let sector = tracked.ahead.unwrap_or(sector_seen);
-        let j = set_point.j.read();
-        let fade = words.fade.zip(set_point.told_bus()).zip(tracked.direction);
-        let allowed = fade.map(|((fade, v_bus), direction)| fade.allowed(l, v_bus, direction));
-        let allowed = match words.bus_current {
-            Some(limit) => Some(limit.allowed(l, allowed)),
-            None => allowed,
-        };
-        let regulated = words.speed.zip(tracked.rotor);
-        let regulated =
-            regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j, allowed));
-        let slewed = words.slew.map(|slew| slew.follow(l, j));
-        let j = match (regulated, slewed) {
-            (Some(regulated), _) => regulated.j,
-            (None, slewed) => {
-                let j = slewed.map_or(j, |(slewed, _)| slewed);
-                allowed.map_or(j, |allowed| allowed.limit(j).named("j_faded"))
-            }
-        };
+        let demand = self.demand(set_point, &words, &tracked);
+        let j = demand.j;
         let commutation = self.commutation(&words, &tracked, [sector, j], currents);
         // Before the reference, so that the reference's product with a sign is added last.
         let held = self.holds_emf().then(|| self.held(currents.pair()));
@@ -192,8 +186,10 @@ impl<'b> CurrentLoop<'_, 'b> {
             outgoing,
         );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
-        let speed = regulated.map(|regulated| regulated.speed);
-        self.tell([e, e_now], speed.or(rotor.map(|rotor| rotor.step_angle)));
+        self.tell(
+            [e, e_now],
+            demand.speed.or(rotor.map(|rotor| rotor.step_angle)),
+        );
         let off_leg = self.off_leg(bus, third);
         let commanded = words.v_cmd.map(read);
         let now = commanded.or_else(|| self.applied_now(&words, currents, e_now, &off_leg));
@@ -213,7 +209,41 @@ impl<'b> CurrentLoop<'_, 'b> {
             emf_error: emf.and_then(|emf| emf.error),
             residual_count: emf.and_then(|emf| emf.residual_count),
             held,
-            of_set_point: regulated
+            of_set_point: demand.word,
+        }
+    }
+
+    /// The current set-point in force: regulated, slewed, and faded with the bus voltage, as the drive
+    /// has it.
+    fn demand(
+        &self,
+        set_point: &SetPointWords<'b>,
+        words: &Words<'b>,
+        tracked: &Tracked<'b>,
+    ) -> Demanded<'b> {
+        let l = self.l;
+        let j = set_point.j.read();
+        let fade = words.fade.zip(set_point.told_bus()).zip(tracked.direction);
+        let allowed = fade.map(|((fade, v_bus), direction)| fade.allowed(l, v_bus, direction));
+        let allowed = match words.bus_current {
+            Some(limit) => Some(limit.allowed(l, allowed)),
+            None => allowed,
+        };
+        let regulated = words.speed.zip(tracked.rotor);
+        let regulated =
+            regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j, allowed));
+        let slewed = words.slew.map(|slew| slew.follow(l, j));
+        let j = match (regulated, slewed) {
+            (Some(regulated), _) => regulated.j,
+            (None, slewed) => {
+                let j = slewed.map_or(j, |(slewed, _)| slewed);
+                allowed.map_or(j, |allowed| allowed.limit(j).named("j_faded"))
+            }
+        };
+        Demanded {
+            j,
+            speed: regulated.map(|regulated| regulated.speed),
+            word: regulated
                 .map(|regulated| regulated.integral)
                 .or(slewed.map(|(_, word)| word)),
         }

@@ -124,20 +124,17 @@ impl<'b> CurrentLoop<'_, 'b> {
             sector_prev: (needs_rotor || needs_direction).then(|| sector_word(l)),
             rotor: needs_rotor.then(|| RotorWords::new(l)),
             direction: (needs_direction && !needs_rotor).then(|| direction_word(l)),
-            speed: options.speed.zip(set_point.speed).map(|(options, words)| {
-                SpeedRegulator::new(l, options, words, set_point)
-            }),
+            speed: options
+                .speed
+                .zip(set_point.speed)
+                .map(|(options, words)| SpeedRegulator::new(l, options, words, set_point)),
             fade,
             slew: options
                 .slew_rate
                 .map(|rate| SlewLimit::new(l, rate, set_point)),
             bus_current: BusCurrentLimit::new(l, options.delay, set_point),
             pair: needs.commutation.then(|| self.commutation_rule()),
-            i_prev: sees.then(|| {
-                let range = Interval::symmetric(l.current_span());
-                let doc = "Current of the last sample, words of current.";
-                l.memories(["i_a_prev", "i_b_prev"], range, doc)
-            }),
+            i_prev: sees.then(|| self.current_words()),
             v_cmd: (needs_command && (needs.predicts() || sees)).then(|| {
                 let doc = "Limited voltage of the last step, applied in this period.";
                 l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
@@ -147,10 +144,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let doc = "Voltage applied in the last period.";
                 l.memories(["v_a_prev", "v_b_prev"], volts, doc)
             }),
-            off_prev: (estimated && needs.off_leg).then(|| {
-                let doc = "Off leg of the last period: 1 a, 2 b, 3 c, 0 none.";
-                l.b.memory("off_prev", 0, LEGS, doc)
-            }),
+            off_prev: (estimated && needs.off_leg).then(|| self.off_leg_word()),
             e_prev: (observes || estimated && options.emf_filter < 1.0).then(|| {
                 let range = Interval::symmetric(e_bound + e_moves);
                 let doc = "EMF that the last step expected for the last period.";
@@ -161,12 +155,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let doc = "EMF that the last step expected for the period that begins now.";
                 l.memories(["e_a_next", "e_b_next"], range, doc)
             }),
-            emf_error: observes.then(|| {
-                let limit = self.emf_error_limit();
-                let doc = "Error of the modelled EMF in the rotor frame: q along the proportional current, d across \
-                    it over sqrt(3); words of voltage.";
-                l.memories(["e_error_q", "e_error_d"], Interval::new(-limit, limit - 1), doc)
-            }),
+            emf_error: observes.then(|| self.emf_error_words()),
             residual: (options.residual_periods)
                 .map(|periods| ResidualWatch::new(l, periods, set_point)),
         }
@@ -176,6 +165,27 @@ impl<'b> CurrentLoop<'_, 'b> {
         let options = self.options;
         let (threshold, timeout) = (options.commutation_threshold, options.commutation_timeout);
         CommutationRule::new(self.l, threshold, timeout, options.advance > 0.0)
+    }
+
+    /// Currents of the last sample.
+    fn current_words(&self) -> [Memory<'b>; 2] {
+        let range = Interval::symmetric(self.l.current_span());
+        let doc = "Current of the last sample, words of current.";
+        self.l.memories(["i_a_prev", "i_b_prev"], range, doc)
+    }
+
+    fn off_leg_word(&self) -> Memory<'b> {
+        let doc = "Off leg of the last period: 1 a, 2 b, 3 c, 0 none.";
+        self.l.b.memory("off_prev", 0, LEGS, doc)
+    }
+
+    /// Error of the modelled EMF, q and d.
+    fn emf_error_words(&self) -> [Memory<'b>; 2] {
+        let limit = self.emf_error_limit();
+        let range = Interval::new(-limit, limit - 1);
+        let doc = "Error of the modelled EMF in the rotor frame: q along the proportional current, d across \
+            it over sqrt(3); words of voltage.";
+        self.l.memories(["e_error_q", "e_error_d"], range, doc)
     }
 
     /// Terminal voltages and off leg of the last command.

@@ -8,10 +8,10 @@
 use super::emf::{Emf, Reading};
 use super::inverter::Inverter;
 use super::motor::Motor;
-use super::reader::Reader;
 use crate::diagnostics::catalogue::{self, Contradiction, Part};
 use crate::diagnostics::{Code, Collector, Diagnostic, engineering, rpm};
 use crate::spec::EmfShape;
+use crate::spec::reader::Reader;
 use crate::spec::units::Dimension;
 
 /// Data sheets round, and rate torque with iron losses: so much is no contradiction.

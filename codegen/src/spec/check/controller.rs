@@ -2,11 +2,12 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
-use super::reader::Reader;
 use crate::diagnostics::{Collector, Location, catalogue};
 use crate::spec::ast::{Field, Section, Value};
 use crate::spec::controller::common::{HallEdges, Surroundings};
 use crate::spec::controller::{self, KINDS, Kind};
+use crate::spec::reader::Reader;
+use crate::spec::schema;
 use crate::spec::{ControllerSpec, HallCapture};
 use std::f64::consts::TAU;
 
@@ -46,7 +47,7 @@ pub(super) fn read(
             let at = &field.name_location;
             errors.push(catalogue::option_planned(at, &field.name));
         }
-        planned
+        planned || schema::misplaced("controller", field, errors)
     });
     let surroundings = Surroundings {
         t_s: inverter.t_s,

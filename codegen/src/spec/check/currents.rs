@@ -2,10 +2,10 @@
 
 use super::inverter::{Adc, Inverter, usual_tolerance};
 use super::motor::Motor;
-use super::reader::Reader;
 use crate::diagnostics::catalogue;
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
 use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
+use crate::spec::reader::Reader;
 use crate::spec::{BusCurrents, ControllerSpec, EmfShape, Reference};
 
 /// Margin of the default trip level above the currents that whole vectors reach.

@@ -4,10 +4,10 @@
 //! The phase constant is the peak EMF of a phase of the equivalent star over mechanical speed. Every
 //! basis is that times a number, which follows from the shape of the EMF.
 
-use super::reader::{Given, Reader};
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::EmfShape;
 use crate::spec::ast::Basis;
+use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
 use crate::spec::units::Dimension;
 
@@ -320,7 +320,7 @@ fn read_torque_constant<'a>(
                 (Basis::PerPeakAmpere, Reading::PerPeakAmpere),
                 (Basis::PerRmsAmpere, Reading::PerRmsAmpere),
             ];
-            let references = schema::references("torque_constant").iter();
+            let references = schema::field("torque_constant").references().iter();
             let forms: Vec<(String, String)> = references
                 .zip(readings)
                 .map(|((_, meaning), (_, reading))| {

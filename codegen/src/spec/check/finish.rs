@@ -2,10 +2,10 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
-use super::reader::Reader;
 use super::{currents, relations};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
+use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, HallCapture, InverterSpec};
 use std::f64::consts::FRAC_PI_3;
 

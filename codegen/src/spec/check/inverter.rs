@@ -1,10 +1,10 @@
 //! The inverter's data: bus, timer, ADCs, currents and speeds.
 
-use super::reader::{Given, Reader};
 use super::sensing::{self, Sensing};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
 use crate::spec::model::period_within;
+use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
 use crate::spec::sensing::CurrentSensor;
 use crate::spec::units::Dimension;
@@ -404,7 +404,7 @@ fn read_gains(
     }
     for name in SHUNT {
         if reader.field(name).is_none() {
-            let (at, example) = (&shunt.location, schema::example(name));
+            let (at, example) = (&shunt.location, schema::field(name).example());
             errors.push(catalogue::needed_field(at, &shunt.name, name, example));
         }
     }

@@ -1,6 +1,6 @@
 //! The first barrier: from the syntax tree to a [`Spec`] in SI units, or all errors at once.
 //!
-//! Single fields first (`reader`), then motor, inverter and controller, then their relations
+//! Single fields first (`super::reader`), then motor, inverter and controller, then their relations
 //! (`relations`, `consistency`). A value in error never causes a second error.
 
 mod consistency;
@@ -11,16 +11,15 @@ mod finish;
 mod inverter;
 mod motor;
 mod origins;
-mod other_names;
-pub(crate) mod reader;
 mod relations;
 mod sensing;
+mod sensing_window;
 
 pub use origins::{Origin, Origins};
 
+use super::reader::Reader;
 use super::{Spec, SpecAst, schema};
 use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue};
-use reader::Reader;
 
 /// Checks a specification and fills in every default.
 ///
@@ -36,9 +35,13 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let (whole_inverter, of_board) = ast.whole_inverter();
     errors.extend(of_board);
     let inverter_reader = Reader::new("inverter", &whole_inverter, schema::INVERTER, fallback);
-    motor_reader.check_fields(&mut errors, |_, _| false);
+    motor_reader.check_fields(&mut errors, |field, errors| {
+        schema::misplaced("motor", field, errors)
+    });
     let motor = motor::read(&motor_reader, &mut errors);
-    inverter_reader.check_fields(&mut errors, |_, _| false);
+    inverter_reader.check_fields(&mut errors, |field, errors| {
+        schema::misplaced("inverter", field, errors)
+    });
     let inverter = inverter::read(&inverter_reader, &mut errors);
     let (controller, capture) =
         controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
@@ -52,7 +55,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         // Torque and EMF in one wrong basis are one mistake.
         relations::check_bus(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
     }
-    sensing::check(
+    sensing_window::check(
         &inverter_reader,
         &inverter,
         (controller.as_ref(), &ast.controller),

@@ -1,10 +1,10 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
 use super::emf::{self, Emf, Winding};
-use super::reader::{Given, Reader};
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
 use crate::spec::model::extreme_sectors;
+use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::{EmfShape, HALL_ANGLES, MotorSpec};
@@ -127,7 +127,8 @@ fn read_winding_value(
         [] => {
             let unit = if name == "resistance" { "ohm" } else { "H" };
             let half = engineering(given.si / 2.0, unit);
-            let forms: Vec<(String, String)> = schema::references(name)
+            let forms: Vec<(String, String)> = schema::field(name)
+                .references()
                 .iter()
                 .map(|(basis, meaning)| {
                     let meaning = match basis {

@@ -2,10 +2,10 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
-use super::reader::Reader;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Diagnostic};
 use crate::spec::HallCapture;
+use crate::spec::reader::Reader;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.

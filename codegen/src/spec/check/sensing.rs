@@ -1,16 +1,10 @@
-//! The current sensors: where they are, what a count of each is worth, and when a leg can be read.
+//! The current sensors: where they are, and what a count of each is worth.
 
-use super::inverter::Inverter;
-use super::reader::Reader;
 use crate::diagnostics::catalogue;
-use crate::diagnostics::{Collector, Diagnostic, engineering};
-use crate::spec::ast::Section;
+use crate::diagnostics::{Collector, Diagnostic};
+use crate::spec::reader::Reader;
 use crate::spec::sensing::SensingTimes;
-use crate::spec::{ControllerSpec, CurrentSensing, SensedPhases};
-
-/// Least share of the period that a leg may be high: below it not even the zero voltage of centred pulses, half the
-/// period each, could be read.
-const LEAST_DUTY: f64 = 0.5;
+use crate::spec::{CurrentSensing, SensedPhases};
 
 /// What was read of the sensors' place.
 #[derive(Clone, Copy, Debug)]
@@ -126,62 +120,4 @@ pub(super) fn of_each_phase<T: Clone>(
             None
         }
     }
-}
-
-/// Accepted: a window and a least low time that leave half of the PWM period, and legs of which no off one need be read.
-pub(super) fn check(
-    reader: &Reader,
-    inverter: &Inverter,
-    (controller, options): (Option<&ControllerSpec>, &Section),
-    errors: &mut Collector,
-) -> Option<()> {
-    let pwm_period = inverter.t_s? / f64::from(inverter.pwm_per_control);
-    let half_low = pwm_period * (1.0 - LEAST_DUTY) / 2.0;
-    let sensing = &inverter.sensing;
-    let period = &inverter.period.as_ref()?.part;
-    if sensing.minimum_low_time > 2.0 * half_low * (1.0 + 1e-9) {
-        let part = reader.part("minimum_low_time", String::new);
-        errors.push(catalogue::minimum_low_time(
-            &part,
-            period,
-            2.0 * half_low,
-            [LEAST_DUTY, pwm_period],
-        ));
-    }
-    let CurrentSensing::LowSide(times) = sensing.place? else {
-        return None;
-    };
-    let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
-    let window = times.window(dead_time, sensing.phases.phases().len());
-    let needed = window.before.max(window.after);
-    if needed > half_low * (1.0 + 1e-9) {
-        let default = |time: f64| move || engineering(time, "s");
-        let parts = [
-            reader.part("settling_time", default(times.settling)),
-            reader.part("dead_time", default(0.0)),
-            reader.part("aperture_time", default(times.aperture)),
-            reader.part("conversion_time", default(times.conversion)),
-        ];
-        errors.push(catalogue::sensing_window(
-            &parts,
-            period,
-            [window.before, window.after],
-            [half_low, LEAST_DUTY],
-            (1.0 - LEAST_DUTY) / 2.0 / needed,
-        ));
-    }
-    if let Some(off) = controller.and_then(ControllerSpec::turns_off) {
-        let place = reader.part("current_sensing", String::new);
-        let phases = reader.part("sensed_phases", || "ab".to_owned());
-        let at = options
-            .field(off.option)
-            .map_or(&place.location, |field| &field.location);
-        errors.push(catalogue::unreadable_leg(
-            at,
-            [off.option, off.value, off.instead],
-            &place,
-            &phases,
-        ));
-    }
-    Some(())
 }

@@ -2,8 +2,8 @@
 
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
-use crate::spec::check::reader::Reader;
 use crate::spec::options::{Row, number, word};
+use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;
 use crate::spec::words::{Words as _, words};

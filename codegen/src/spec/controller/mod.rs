@@ -21,9 +21,9 @@ pub use pdcc::{Modulation, PdccSpec};
 pub use phcc::{PhccCandidates, PhccSpec, SwitchingTable};
 pub use pi_pwm::PiPwmSpec;
 
-use super::check::reader::Reader;
 use super::health::Drive;
 use super::options::{Row, lines};
+use super::reader::Reader;
 use super::rule::Rule;
 use crate::diagnostics::catalogue::Part;
 use crate::diagnostics::{Collector, Diagnostic};

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Collector, catalogue};
 use crate::spec::ast::Value;
-use crate::spec::check::reader::Reader;
+use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
 use crate::spec::words::words;
 

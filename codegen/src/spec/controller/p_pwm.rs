@@ -7,8 +7,8 @@ use super::common::{
 };
 use crate::diagnostics::Collector;
 use crate::spec::MotorSpec;
-use crate::spec::check::reader::Reader;
 use crate::spec::options::{Row, number, word};
+use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;
 use std::f64::consts::TAU;

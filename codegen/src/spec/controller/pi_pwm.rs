@@ -7,8 +7,8 @@ use super::common::{
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
-use crate::spec::check::reader::Reader;
 use crate::spec::options::{Row, if_on, number, word};
+use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;
 use crate::spec::words::words;

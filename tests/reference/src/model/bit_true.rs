@@ -17,6 +17,7 @@ mod parts;
 mod physical;
 mod residual;
 mod rotor;
+mod sectors;
 mod slew;
 mod speed;
 mod state;
@@ -442,10 +443,11 @@ impl<W: Word> BitTrue<W> {
                 if source == EmfSource::Model {
                     (mean(start, end), mean(now, start))
                 } else {
-                    emf_error = emf::corrected_error(k, &self.state, i, shape);
+                    let residual = emf::residual(k, &self.state, i);
+                    emf_error = emf::corrected_error(k, &self.state, residual, shape);
                     if let Some(watch) = &self.residual {
                         let demand = (j, angle.step);
-                        residual_count = watch.count(k, &self.state, i, emf_error, demand);
+                        residual_count = watch.count(&self.state, residual, emf_error, demand);
                     }
                     let e = emf::corrected(k, mean(start, end), emf_error, shape);
                     (e, if delayed { self.state.e_next } else { e })

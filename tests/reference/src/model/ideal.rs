@@ -390,9 +390,10 @@ impl Ideal {
                 if source == EmfSource::Model {
                     (e, mean(theta, start))
                 } else {
-                    emf_error = self.corrected_error([i_a, i_b], &shape);
+                    let residual = self.residual([i_a, i_b]);
+                    emf_error = self.corrected_error(residual, &shape);
                     residual_count =
-                        self.counted_residual([i_a, i_b], emf_error, [current, step_angle]);
+                        self.counted_residual(residual, emf_error, [current, step_angle]);
                     let e = self.corrected_emf(&e, emf_error, &shape);
                     let [next_a, next_b] = self.state.e_next;
                     (e, if delayed { from_ab(next_a, next_b) } else { e })

@@ -20,6 +20,8 @@ pub struct BusCurrent<W> {
     from_current: f64,
     /// J_TOP
     top: W,
+    /// 2^m
+    from_voltage: f64,
     /// LOST
     lost: f64,
     /// MOST
@@ -39,11 +41,13 @@ impl<W: Word> BusCurrent<W> {
         }
         let counts = pow2(scale.signed_bits("i_bus")?);
         let per_ampere = 2.0 * k.timer_period * counts / scale.g;
-        let ampere = scale.w / scale.two_v / reference_gain(spec);
+        let from_voltage = pow2(scale.extra_bits("j_withheld")?);
+        let ampere = scale.w / scale.two_v / from_voltage / reference_gain(spec);
         Ok(Some(Self {
             gain: scale.coefficient("k_bus_current", 1.0 / 32.0 / ampere / per_ampere)?,
             limits: stated.map(|most| most.map(|most| (most * per_ampere + 0.5).floor())),
             from_current: counts / scale.two_i,
+            from_voltage,
             top: k.k_set.mul(word(k.i_max_bits)),
             lost: round_half_up(2.0 * spec.dead_share() * k.timer_period),
             most: 4.0 * k.timer_period * (pow2(inverter.adc_bits as i32) * counts + 1.0),
@@ -55,7 +59,8 @@ impl<W: Word> BusCurrent<W> {
     /// The limits of the set-point, within others.
     #[inline]
     pub fn allowed(&self, [least, most]: [Option<W>; 2], state: &State<W>) -> [Option<W>; 2] {
-        let left = self.top - state.j_withheld;
+        let withheld = floor_weighted(state.j_withheld, 1.0 / self.from_voltage);
+        let left = self.top - withheld;
         let least = least.map_or(-left, |least| greater(least, -left));
         let most = most.map_or(left, |most| lesser(most, left));
         [Some(least), Some(most)]
@@ -89,7 +94,8 @@ impl<W: Word> BusCurrent<W> {
             (Some(drawn), Some(returned)) => lesser(drawn, returned),
             (drawn, returned) => drawn.or(returned).unwrap_or(word(0.0)),
         };
-        state.j_withheld = within(state.j_withheld - self.gain.mul(left), 0.0, self.top);
+        let top = self.top * self.from_voltage;
+        state.j_withheld = within(state.j_withheld - self.gain.mul(left), 0.0, top);
         state.i_bus_mean = mean;
         state.line_ended = begins;
         state.line_cmd = line;

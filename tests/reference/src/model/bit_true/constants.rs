@@ -1,7 +1,7 @@
 //! Coefficients and constants, rounded from the specification (section "Words").
 
 use super::parts::{Part, Parts};
-use super::rotor::Sectors;
+use super::sectors::Sectors;
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};

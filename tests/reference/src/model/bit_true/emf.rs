@@ -39,19 +39,18 @@ pub fn residual<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2
     })
 }
 
-/// Error of the modelled EMF, q and d, corrected by the period that ends with the currents `i`.
+/// Error of the modelled EMF, q and d, corrected by the residual of the period that has ended.
 #[inline]
 pub fn corrected_error<W: Word>(
     k: &Constants<W>,
     state: &State<W>,
-    i: [W; 2],
+    [x, y]: [W; 2],
     shape: [W; 2],
 ) -> [W; 2] {
     if state.timing.edges != 2 {
         return state.emf_error;
     }
     let believed = |volts: W| within(volts, -k.emf_error_limit, k.emf_error_limit - 1.0);
-    let [x, y] = residual(k, state, i);
     let ([a, b], [line_a, line_b]) = (shape, lines(shape));
     let along = k.observer.floor_sum_of_products([x, line_a], [y, line_b]);
     let across = k.observer.floor_sum_of_products([y, a], [-x, b]);

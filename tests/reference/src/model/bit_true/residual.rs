@@ -1,7 +1,6 @@
 //! Residual watch (section "Residual watch").
 
-use super::constants::{Constants, Scale};
-use super::emf;
+use super::constants::Scale;
 use super::state::State;
 use crate::exact::{Coefficient, Word, greater, pow2, round_half_up, within, word};
 use crate::model::variant::{allowed_residual, reference_gain};
@@ -44,17 +43,16 @@ impl<W: Word> ResidualWatch<W> {
         count >= self.periods
     }
 
-    /// The count after the period that ends with the currents `i`; `emf_error` is that after it.
+    /// The count after a period with this residual of phases a, b; the EMF's error is that after it.
     #[inline]
     pub fn count(
         &self,
-        k: &Constants<W>,
         state: &State<W>,
-        i: [W; 2],
+        residual: [W; 2],
         [q, d]: [W; 2],
         (j, step_angle): (W, W),
     ) -> W {
-        let [a, b] = emf::residual(k, state, i).map(W::abs);
+        let [a, b] = residual.map(W::abs);
         let learnt = greater(q.abs(), d.abs() * 2.0);
         let (seen, by_speed) = if state.timing.edges == 2 {
             (learnt, self.per_angle.mul(step_angle.abs()))

@@ -82,13 +82,12 @@ impl Ideal {
         }
     }
 
-    /// Error of the modelled EMF, q and d, corrected by the period that ends with the currents `i`.
-    pub(super) fn corrected_error(&self, i: [f64; 2], shape: &Vector2<f64>) -> [f64; 2] {
+    /// Error of the modelled EMF, q and d, corrected by the residual of the period that has ended.
+    pub(super) fn corrected_error(&self, [x, y]: [f64; 2], shape: &Vector2<f64>) -> [f64; 2] {
         if self.state.timing.edges != 2 {
             return self.state.emf_error;
         }
         let believed = |volts: f64| volts.clamp(-self.emf_error_limit, self.emf_error_limit);
-        let [x, y] = self.residual(i);
         let residual = from_ab(x, y) * OBSERVER_GAIN;
         [
             believed(self.state.emf_error[0] + residual.dot(shape)),
@@ -96,22 +95,23 @@ impl Ideal {
         ]
     }
 
-    /// Observed EMF of phases a, b less the expected one.
-    fn residual(&self, i: [f64; 2]) -> [f64; 2] {
+    /// Observed EMF of phases a, b less the expected one, in the period that ends with the currents
+    /// `i`.
+    pub(super) fn residual(&self, i: [f64; 2]) -> [f64; 2] {
         let [e_a, e_b] = self.state.e_prev;
         let most = self.emf_error_limit;
         to_ab(&(self.emf_seen(i) - from_ab(e_a, e_b))).map(|volts| volts.clamp(-most, most))
     }
 
-    /// Count of the residual watch after the period that ends with the currents `i`; `emf_error` is
-    /// that after it.
+    /// Count of the residual watch after a period with this residual of phases a, b; the EMF's error
+    /// is that after it.
     pub(super) fn counted_residual(
         &self,
-        i: [f64; 2],
+        residual: [f64; 2],
         [q, d]: [f64; 2],
         [current, step_angle]: [f64; 2],
     ) -> f64 {
-        let [a, b] = self.residual(i).map(f64::abs);
+        let [a, b] = residual.map(f64::abs);
         let [least, per_ampere, per_speed, unseen] = self.allowed_residual;
         let learnt = q.abs().max(2.0 * d.abs());
         let (seen, by_speed) = if self.state.timing.edges == 2 {

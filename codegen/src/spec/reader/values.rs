@@ -1,23 +1,13 @@
-//! Typed access to the fields of a section: checks single fields, and returns values in SI units.
+//! Values of fields, each checked by itself and in SI units.
 
-use super::other_names;
+use super::{Reader, other_names};
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, Location, engineering, percent, rpm, significant};
-use crate::spec::ast::{Basis, Field, Number, Section, Value};
-use crate::spec::rule::{Kind, Preset, Rule};
-use crate::spec::schema;
+use crate::diagnostics::{Collector, engineering, percent, rpm, significant};
+use crate::spec::ast::{Basis, Number, Value};
+use crate::spec::rule::{Kind, Preset};
 use crate::spec::units::Dimension;
-use crate::spec::value::{parse_value, plain_number};
+use crate::spec::value::parse_value;
 use crate::spec::words::Words;
-
-/// One section's fields under their rules.
-pub(crate) struct Reader<'a> {
-    name: &'static str,
-    section: &'a Section,
-    rules: Vec<&'static Rule>,
-    /// Where missing fields are reported.
-    at: Location,
-}
 
 /// A number that was read.
 #[derive(Clone, Debug)]
@@ -35,199 +25,6 @@ pub(crate) struct Given<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// Of two rules with one name the first applies. `fallback`: where to report a missing section.
-    pub fn new(
-        name: &'static str,
-        section: &'a Section,
-        rules: impl IntoIterator<Item = &'static Rule>,
-        fallback: &Location,
-    ) -> Self {
-        let at = section.location.as_ref().unwrap_or(fallback).clone();
-        Self {
-            name,
-            section,
-            rules: rules.into_iter().collect(),
-            at,
-        }
-    }
-
-    /// Where the section begins.
-    pub fn location(&self) -> &Location {
-        &self.at
-    }
-
-    /// Reports a missing section, unknown and repeated fields, and unreadable values.
-    ///
-    /// `elsewhere` may report a field that has no rule; it returns whether it did.
-    pub fn check_fields(
-        &self,
-        errors: &mut Collector,
-        elsewhere: impl Fn(&Field, &mut Collector) -> bool,
-    ) {
-        if self.section.location.is_none() && !self.section.incomplete {
-            errors.push(catalogue::missing_section(&self.at, self.name));
-        }
-        let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
-        for (index, field) in self.section.fields.iter().enumerate() {
-            let at = &field.name_location;
-            if let Some(first) = self.section.fields[..index]
-                .iter()
-                .find(|f| f.name == field.name)
-            {
-                errors.push(catalogue::duplicate_field(
-                    at,
-                    &first.name_location,
-                    &field.name,
-                ));
-            } else if known.contains(&field.name.as_str()) {
-                if let Value::Malformed(error) = &field.value {
-                    errors.push((**error).clone());
-                }
-            } else if let Some(right) = schema::section_of(&field.name) {
-                errors.push(catalogue::misplaced_field(
-                    at,
-                    self.name,
-                    &field.name,
-                    right,
-                ));
-            } else if let Some(remedy) = self.remedy(field) {
-                errors.push(catalogue::other_name(at, self.name, &field.name, &remedy));
-            } else if !elsewhere(field, errors) {
-                errors.push(catalogue::unknown_field(at, self.name, &field.name, &known));
-            }
-        }
-    }
-
-    /// Reports missing fields of a section that exists.
-    pub fn require(&self, errors: &mut Collector, names: &[&str]) {
-        for name in names {
-            if self.may_lack(name) {
-                errors.push(catalogue::missing_field(
-                    &self.at,
-                    self.name,
-                    name,
-                    &schema::examples(name, &[]),
-                ));
-            }
-        }
-    }
-
-    /// Reports when neither or both of two fields are given.
-    pub fn require_one_of(&self, errors: &mut Collector, names: [&str; 2]) {
-        match names.map(|name| self.section.field(name)) {
-            [Some(one), Some(other)] => errors.push(catalogue::exclusive_fields(
-                &other.name_location,
-                &other.name,
-                &one.name_location,
-                &one.name,
-            )),
-            [None, None] => self.require_any_of(errors, &names),
-            _ => {}
-        }
-    }
-
-    /// Reports when none of some fields is given.
-    pub fn require_any_of(&self, errors: &mut Collector, names: &[&str]) {
-        if names.iter().all(|name| self.may_lack(name)) {
-            let fields: Vec<(&str, &str)> = names
-                .iter()
-                .map(|name| (*name, schema::example(name)))
-                .collect();
-            errors.push(catalogue::missing_alternative(&self.at, self.name, &fields));
-        }
-    }
-
-    fn may_lack(&self, name: &str) -> bool {
-        self.section.location.is_some()
-            && !self.section.incomplete
-            && self.section.field(name).is_none()
-            && !self.is_misspelt(name)
-    }
-
-    /// Whether an unknown field, which is reported by itself, was probably meant to be this one.
-    fn is_misspelt(&self, name: &str) -> bool {
-        let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
-        self.section.fields.iter().any(|field| {
-            !known.contains(&field.name.as_str())
-                && other_names::meant(&field.name)
-                    .or_else(|| catalogue::nearest(&field.name, &known))
-                    == Some(name)
-        })
-    }
-
-    /// What to write for a field of this section that is given under another name.
-    fn remedy(&self, field: &Field) -> Option<String> {
-        let meant = other_names::meant(&field.name)?;
-        let is_here = self.rules.iter().any(|rule| rule.name == meant);
-        is_here.then(|| other_names::remedy(meant, field))
-    }
-
-    /// The field of this name, if it was written.
-    pub fn field(&self, name: &str) -> Option<&'a Field> {
-        self.section.field(name)
-    }
-
-    /// The field for messages: as written, or with its default.
-    pub fn part(&self, name: &'static str, default: impl FnOnce() -> String) -> Part {
-        match self.field(name) {
-            Some(field) => Part {
-                field: name,
-                given: field.value.to_string(),
-                location: field.location.clone(),
-            },
-            None => Part {
-                field: name,
-                given: format!("{} (default)", default()),
-                location: self.at.clone(),
-            },
-        }
-    }
-
-    /// What `read` makes of each value of a list, or of the one value that stands for all; none where one is in
-    /// error. `read` takes a reader in which that value stands alone.
-    pub fn each<T>(
-        &self,
-        name: &'static str,
-        mut read: impl FnMut(&Reader) -> Option<T>,
-    ) -> Option<Vec<T>> {
-        let field = self.field(name)?;
-        let values = match &field.value {
-            Value::List(values) => values.clone(),
-            Value::Integers(numbers) => {
-                let number =
-                    |number: &i64| plain_number(name, &number.to_string(), &field.location);
-                numbers.iter().map(number).collect()
-            }
-            value => vec![value.clone()],
-        };
-        let read_one = |value| {
-            let field = Field {
-                value,
-                ..field.clone()
-            };
-            let section = Section {
-                location: Some(self.at.clone()),
-                fields: vec![field],
-                incomplete: true,
-            };
-            read(&Reader::new(
-                self.name,
-                &section,
-                self.rules.clone(),
-                &self.at,
-            ))
-        };
-        // All are read, so that all errors are told at once.
-        let read: Vec<Option<T>> = values.into_iter().map(read_one).collect();
-        read.into_iter().collect()
-    }
-
-    fn rule(&self, name: &str) -> Option<(&'a Field, &'static Rule)> {
-        let field = self.field(name)?;
-        let rule = self.rules.iter().find(|rule| rule.name == name)?;
-        Some((field, *rule))
-    }
-
     /// The number of a field that takes one.
     fn number(&self, errors: &mut Collector, name: &'static str) -> Option<(Given<'a>, Kind)> {
         let (field, rule) = self.rule(name)?;
@@ -256,11 +53,52 @@ impl<'a> Reader<'a> {
             Value::Malformed(_) => None,
             other => {
                 let given = other.to_string();
-                let (at, examples) = (&field.location, schema::examples(name, &[]));
+                let (at, examples) = (&field.location, self.field_rule(name).examples(&[]));
                 errors.push(catalogue::wrong_kind(at, name, &given, wanted, &examples));
                 None
             }
         }
+    }
+
+    /// Reports a value outside its limits; returns whether it is inside.
+    fn within(
+        &self,
+        errors: &mut Collector,
+        given: &Given,
+        [low, high]: [f64; 2],
+        [low_text, high_text]: [String; 2],
+    ) -> bool {
+        // A decimal limit and the same value in another unit may differ in the last bit.
+        let slack = 1e-9;
+        let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
+        if low >= 0.0 && (given.si < 0.0 || (given.si == 0.0 && low > 0.0)) {
+            // Limits that only exclude zero are not shown.
+            let bounded = high < f64::MAX;
+            let error = if low > 0.0 && bounded {
+                catalogue::not_positive(at, name, text, &low_text, &high_text)
+            } else if bounded {
+                catalogue::out_of_range(at, name, text, &low_text, &high_text)
+            } else {
+                catalogue::not_above_zero(
+                    at,
+                    name,
+                    text,
+                    &self.field_rule(name).examples(given.basis),
+                )
+            };
+            errors.push(error);
+            return false;
+        }
+        let inside = given.si >= low - slack * low.abs() && given.si <= high * (1.0 + slack);
+        if !inside {
+            // Only a number with a unit can have a wrong one.
+            let error = match given.dimension {
+                Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
+                None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
+            };
+            errors.push(error);
+        }
+        inside
     }
 
     /// A number with a unit, in SI, within its limits.
@@ -277,7 +115,7 @@ impl<'a> Reader<'a> {
         let (at, text, examples) = (
             &given.part.location,
             &given.part.given,
-            schema::examples(name, given.basis),
+            self.field_rule(name).examples(given.basis),
         );
         let Some(dimension) = given.dimension else {
             errors.push(catalogue::missing_unit(at, name, text, &examples));
@@ -290,7 +128,7 @@ impl<'a> Reader<'a> {
             ));
             return None;
         }
-        within(
+        self.within(
             errors,
             &given,
             [low, high],
@@ -316,7 +154,7 @@ impl<'a> Reader<'a> {
             && !matches!(dimension, Dimension::Time | Dimension::Periods)
         {
             let wanted = "a time or a number of periods";
-            let (got, examples) = (dimension.name(), schema::examples(name, &[]));
+            let (got, examples) = (dimension.name(), self.field_rule(name).examples(&[]));
             errors.push(catalogue::wrong_dimension(
                 at, name, text, got, wanted, &examples,
             ));
@@ -338,7 +176,7 @@ impl<'a> Reader<'a> {
             return None;
         };
         (refuse_unit(errors, &given)
-            && within(
+            && self.within(
                 errors,
                 &given,
                 [low, high],
@@ -357,7 +195,7 @@ impl<'a> Reader<'a> {
             let (at, text, examples) = (
                 &given.part.location,
                 &given.part.given,
-                schema::examples(name, &[]),
+                self.field_rule(name).examples(&[]),
             );
             errors.push(catalogue::wrong_kind(
                 at,
@@ -372,7 +210,7 @@ impl<'a> Reader<'a> {
             Kind::OneOf(numbers) => is_one_of(errors, &given, numbers),
             Kind::Integer { low, high } => {
                 let limits = [f64::from(low), f64::from(high)];
-                within(errors, &given, limits, [low.to_string(), high.to_string()])
+                self.within(errors, &given, limits, [low.to_string(), high.to_string()])
             }
             _ => false,
         };
@@ -429,8 +267,7 @@ impl<'a> Reader<'a> {
     }
 
     fn preset(&self, name: &str) -> Option<Preset> {
-        let rule = self.rules.iter().find(|rule| rule.name == name)?;
-        Some(rule.preset)
+        Some(self.field_rule(name).rule?.preset)
     }
 
     /// The default of a number, in SI units; NaN where the table has none (excluded by a test).
@@ -438,7 +275,7 @@ impl<'a> Reader<'a> {
         let Some(Preset::Value(text)) = self.preset(name) else {
             return f64::NAN;
         };
-        match parse_value(name, text, &self.at) {
+        match parse_value(self.field_rule(name), text, &self.at) {
             Value::Number(number) => number.si(),
             _ => f64::NAN,
         }
@@ -492,7 +329,7 @@ impl<'a> Reader<'a> {
             Value::Malformed(_) => None,
             _ => {
                 let wanted = "a list of whole numbers";
-                let (at, examples) = (&part.location, schema::examples(name, &[]));
+                let (at, examples) = (&part.location, self.field_rule(name).examples(&[]));
                 errors.push(catalogue::wrong_kind(
                     at,
                     name,
@@ -502,14 +339,6 @@ impl<'a> Reader<'a> {
                 ));
                 None
             }
-        }
-    }
-
-    /// Free text.
-    pub fn text(&self, name: &str) -> Option<&'a str> {
-        match &self.field(name)?.value {
-            Value::Text(text) => Some(text),
-            _ => None,
         }
     }
 }
@@ -558,41 +387,6 @@ fn is_one_of(errors: &mut Collector, given: &Given, numbers: &[u32]) -> bool {
         ));
     }
     found
-}
-
-/// Reports a value outside its limits; returns whether it is inside.
-fn within(
-    errors: &mut Collector,
-    given: &Given,
-    [low, high]: [f64; 2],
-    [low_text, high_text]: [String; 2],
-) -> bool {
-    // A decimal limit and the same value in another unit may differ in the last bit.
-    let slack = 1e-9;
-    let (at, name, text) = (&given.part.location, given.part.field, &given.part.given);
-    if low >= 0.0 && (given.si < 0.0 || (given.si == 0.0 && low > 0.0)) {
-        // Limits that only exclude zero are not shown.
-        let bounded = high < f64::MAX;
-        let error = if low > 0.0 && bounded {
-            catalogue::not_positive(at, name, text, &low_text, &high_text)
-        } else if bounded {
-            catalogue::out_of_range(at, name, text, &low_text, &high_text)
-        } else {
-            catalogue::not_above_zero(at, name, text, &schema::examples(name, given.basis))
-        };
-        errors.push(error);
-        return false;
-    }
-    let inside = given.si >= low - slack * low.abs() && given.si <= high * (1.0 + slack);
-    if !inside {
-        // Only a number with a unit can have a wrong one.
-        let error = match given.dimension {
-            Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
-            None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
-        };
-        errors.push(error);
-    }
-    inside
 }
 
 /// A limit for messages, in the field's usual unit.

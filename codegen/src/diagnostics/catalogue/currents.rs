@@ -1,0 +1,320 @@
+//! Texts about current sensors, trip level and largest current.
+
+use super::part::{Part, with_parts};
+use crate::diagnostics::{
+    Code, Diagnostic, Location, at_least, at_most, engineering, percent, significant,
+};
+
+/// The current sensors do not reach the rated current; `range` in ampere.
+pub fn adc_range_too_small(range: &Part, rated: &Part, reach: f64) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::AdcRangeTooSmall,
+            &range.location,
+            format!(
+                "`{}`: {} measures up to {}, below the rated current of {}; widen the range or lower `rated_current`",
+                range.field,
+                range.given,
+                engineering(at_most(reach), "A"),
+                rated.given,
+            ),
+        ),
+        &[rated],
+    )
+}
+
+/// The trip current cannot be measured; `reach` in ampere.
+pub fn trip_above_adc_range(trip: &Part, range: &Part, reach: f64) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::TripAboveAdcRange,
+            &trip.location,
+            format!(
+                "`trip_current`: {}, but the current sensors measure up to {} only; lower it or widen `{}`",
+                trip.given,
+                engineering(at_most(reach), "A"),
+                range.field,
+            ),
+        ),
+        &[range],
+    )
+}
+
+/// The largest set-point reaches the trip current; `peak`: greatest phase current at that
+/// set-point, ampere.
+pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::MaxCurrentAboveTrip,
+            &max.location,
+            format!(
+                "`max_current`: {} gives phase currents of up to {}, above the trip current of {}; lower it, or raise `trip_current`",
+                max.given,
+                engineering(at_least(peak), "A"),
+                trip.given,
+            ),
+        ),
+        &[trip],
+    )
+}
+
+/// Hysteresis control reaches the trip current without a fault. `reach`: greatest phase current;
+/// `band`: half width of the bands; `stride`: greatest change of a current in `periods` periods;
+/// all in ampere.
+pub fn hysteresis_reaches_trip(
+    max: &Part,
+    trip: &Part,
+    reach: f64,
+    [band, stride]: [f64; 2],
+    periods: u32,
+) -> Diagnostic {
+    let duration = if periods == 1 {
+        "a period".to_owned()
+    } else {
+        format!("{periods} periods")
+    };
+    with_parts(
+        Diagnostic::new(
+            Code::MaxCurrentAboveTrip,
+            &max.location,
+            format!(
+                "`max_current`: {} gives phase currents of up to {} with phcc (with a band of {} and a change of {} by one vector in {duration}), above the trip current of {}; lower it, shorten the control period, or raise `trip_current` within `adc_range`",
+                max.given,
+                engineering(at_least(reach), "A"),
+                engineering(band, "A"),
+                engineering(stride, "A"),
+                trip.given,
+            ),
+        ),
+        &[trip],
+    )
+}
+
+/// The largest set-point is too few ADC counts; `given`, `count` (one of them) in ampere.
+pub fn max_current_below_counts(
+    max: &Part,
+    range: &Part,
+    given: f64,
+    count: f64,
+    least: f64,
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::AdcTooCoarse,
+            &max.location,
+            format!(
+                "`max_current`: {} is {} ADC counts of {}, below the minimum of {least} (an error of 5 % by half a count); narrow `{}`, raise `adc_bits`, or give at least {}",
+                max.given,
+                significant(given / count),
+                engineering(count, "A"),
+                range.field,
+                engineering(at_least(least * count), "A"),
+            ),
+        ),
+        &[range],
+    )
+}
+
+/// The trip current is `times` the `peak` current of the largest set-point, ampere. `given`: as
+/// written or by default; `remedy`: a clause.
+pub fn trip_far_above(
+    at: &Location,
+    given: &str,
+    times: f64,
+    peak: f64,
+    remedy: &str,
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::TripFarAbove,
+        at,
+        format!(
+            "`trip_current`: {given} is {} times the {} of the largest set-point, and a fault reaches it before the drive trips; {remedy}",
+            significant(times),
+            engineering(peak, "A"),
+        ),
+    )
+}
+
+/// PHCC reaches the trip current in commutations at low speed. `swing`: the current reached,
+/// ampere; `trip`: the trip current, ampere.
+pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Diagnostic {
+    Diagnostic::new(
+        Code::SwingAboveTrip,
+        at,
+        format!(
+            "`max_current`: {max} gives peaks of about {} with phcc in commutations at low speed, above the trip current of {}, so the drive may trip without a fault; lower `max_current` or widen `adc_range`",
+            engineering(swing, "A"),
+            engineering(trip, "A"),
+        ),
+    )
+}
+
+/// Of three current sensors two are read.
+pub fn unread_sensor(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnreadSensor,
+        at,
+        "`sensed_phases`: of three current sensors this version reads those of phases a and b; `bc` or `ca` names another pair"
+            .to_owned(),
+    )
+}
+
+/// The commutation threshold is at least the rated current.
+pub fn threshold_above_rated(threshold: &Part, rated: &Part) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::CommutationThreshold,
+            &threshold.location,
+            format!(
+                "`commutation_threshold`: {} is not below the rated current of {}, so a commutation would end at once; lower it to a tenth of the rated current or less",
+                threshold.given, rated.given
+            ),
+        ),
+        &[rated],
+    )
+}
+
+/// The commutation threshold is below the ADC's resolution; `count` in ampere.
+pub fn threshold_below_count(threshold: &Part, count: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::CommutationThreshold,
+        &threshold.location,
+        format!(
+            "`commutation_threshold`: {} is below one ADC count of {}; raise it above the noise of the current measurement",
+            threshold.given,
+            engineering(at_least(count), "A"),
+        ),
+    )
+}
+
+/// The ADC offset is outside the middle half of the ADC range; `full`: 2^bits.
+pub fn adc_offset(offset: &Part, full: u32) -> Diagnostic {
+    Diagnostic::new(
+        Code::AdcOffset,
+        &offset.location,
+        format!(
+            "`adc_offset`: {} lies outside {} to {}, the middle half of the ADC's {full} counts; move it there, so that both signs of the current fit",
+            offset.given,
+            full / 4,
+            full - full / 4,
+        ),
+    )
+}
+
+/// The window in which a leg must be low to be sampled takes too much of the PWM period. `needed`: before and behind
+/// the turning point, second; `most`: what either may take, second, and the least duty that it leaves; `f_pwm`: the
+/// greatest PWM frequency that leaves so much, hertz.
+pub fn sensing_window(
+    parts: &[Part],
+    period: &Part,
+    [before, after]: [f64; 2],
+    [most, duty]: [f64; 2],
+    f_pwm: f64,
+) -> Diagnostic {
+    let remedy = if before >= after {
+        "shorten `settling_time`, `dead_time` or `sampling_lead`"
+    } else {
+        "shorten `aperture_time` or `conversion_time`, or raise `sampling_lead`"
+    };
+    let at = parts
+        .first()
+        .map_or(&period.location, |part| &part.location);
+    let error = Diagnostic::new(
+        Code::SensingWindow,
+        at,
+        format!(
+            "`current_sensing`: to be sampled a leg must be low for {} before the timer's turning point and {} behind it, of which either may be {} at most, so that a duty of {} can be read; {remedy}, or lower `f_pwm` to {}",
+            engineering(before, "s"),
+            engineering(after, "s"),
+            engineering(at_most(most), "s"),
+            percent(duty),
+            engineering(at_most(f_pwm), "Hz"),
+        ),
+    );
+    let parts: Vec<&Part> = parts.iter().chain([period]).collect();
+    with_parts(error, &parts)
+}
+
+/// The least low time takes too much of the PWM period; `most` of it, second; `limits`: the least duty that must be left,
+/// and the PWM period, second.
+pub fn minimum_low_time(
+    time: &Part,
+    period: &Part,
+    most: f64,
+    [duty, pwm_period]: [f64; 2],
+) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::MinimumLowTime,
+        &time.location,
+        format!(
+            "`minimum_low_time`: {} leaves a duty below {} of the PWM period of {}; shorten it to {} or lower `f_pwm`",
+            time.given,
+            percent(duty),
+            engineering(pwm_period, "s"),
+            engineering(at_most(most), "s"),
+        ),
+    );
+    with_parts(error, &[period])
+}
+
+/// A list of `given` values where there are so many sensed phases.
+pub fn not_of_each_phase(list: &Part, phases: &Part, given: usize, wanted: usize) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::SensedPhases,
+        &list.location,
+        format!(
+            "`{}`: {} holds {given} values, but `sensed_phases` {} are {wanted}; give one value for all, or {wanted}",
+            list.field, list.given, phases.given,
+        ),
+    );
+    with_parts(error, &[phases])
+}
+
+/// A controller that turns legs off where only two low legs have sensors: its option, the value that
+/// does so, and the setting in place of it.
+pub fn unreadable_leg(
+    at: &Location,
+    [option, value, instead]: [&str; 3],
+    place: &Part,
+    phases: &Part,
+) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::UnreadableLeg,
+        at,
+        format!(
+            "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with `current_sensing: in_phase`",
+            option, value, phases.given, instead,
+        ),
+    );
+    with_parts(error, &[place, phases])
+}
+
+/// Legs must be low for a while in every period, and this controller holds them high.
+pub fn legs_held_high(at: &Location, name: &str, given: &str, kind: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::LegsHeldHigh,
+        at,
+        format!(
+            "`{name}`: {given} needs legs that are low for a while in every period, but `{kind}` with these options holds legs high for whole periods; choose three pulsed legs: `pdcc` with `modulation: three_phase`, `pi-pwm` with `six_step: off`, or `p-pwm`"
+        ),
+    )
+}
+
+/// The residual watch allows for `allowed` volts at standstill with the largest set-point, as written or
+/// by default; `bus`, volt.
+pub fn watch_is_blind(
+    at: &Location,
+    given: &str,
+    max: &str,
+    [allowed, bus]: [f64; 2],
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::WatchIsBlind,
+        at,
+        format!(
+            "`residual_timeout`: {given}: with `max_current` of {max} the watch allows for {} of deviation at standstill, more than half the bus of {}, and notices little; lower `max_current`, or leave the watch out",
+            engineering(allowed, "V"),
+            engineering(bus, "V"),
+        ),
+    )
+}

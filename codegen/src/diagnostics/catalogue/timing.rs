@@ -1,0 +1,171 @@
+//! Texts about periods, timers and speeds.
+
+use super::part::{Part, with_parts};
+use crate::diagnostics::{
+    Code, Diagnostic, at_least, at_most, engineering, frequency, rpm_at_least, rpm_at_most,
+    significant,
+};
+
+/// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest
+/// period of whole timer counts that is accepted, second, and the frequency of its PWM, hertz.
+pub fn period_too_long(
+    period: &Part,
+    resistance: &Part,
+    inductance: &Part,
+    t_s: f64,
+    time_constant: f64,
+    [longest, f_pwm]: [f64; 2],
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::PeriodTooLong,
+            &period.location,
+            format!(
+                "`{}`: {} is a control period of {}, but L/R of the motor is {}: R Ts/L is {} and must not exceed 0.5; use a period of at most {} (`f_pwm` of at least {})",
+                period.field,
+                period.given,
+                engineering(t_s, "s"),
+                engineering(time_constant, "s"),
+                significant(t_s / time_constant),
+                engineering(at_most(longest), "s"),
+                engineering(at_least(f_pwm), "Hz"),
+            ),
+        ),
+        &[resistance, inductance],
+    )
+}
+
+/// The timer period, `counts`, is outside 100 to 65535; `clock`, `f_pwm` in hertz.
+pub fn timer_period(
+    timer: &Part,
+    period: &Part,
+    counts: f64,
+    clock: f64,
+    f_pwm: f64,
+) -> Diagnostic {
+    let whole = counts.round().clamp(100.0, 65535.0);
+    let problem = if counts < whole {
+        "below 100, where rounding to whole counts may change the frequency by more than 0.5 %"
+    } else {
+        "above 65535, the limit of a 16-bit timer"
+    };
+    with_parts(
+        Diagnostic::new(
+            Code::TimerPeriod,
+            &timer.location,
+            format!(
+                "`{}`: {} gives a centre-aligned timer period of clock/(2 f_pwm) = {} counts at {}, {problem}; {} counts need an `f_pwm` of {} or a `timer_clock` of {}",
+                timer.field,
+                timer.given,
+                significant(counts),
+                engineering(f_pwm, "Hz"),
+                significant(whole),
+                frequency(clock / (2.0 * whole)),
+                frequency(2.0 * f_pwm * whole),
+            ),
+        ),
+        &[period],
+    )
+}
+
+/// The Hall capture timer's ticks per control period lie outside 2 to 65535.
+pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnostic {
+    let (problem, limit) = if ticks < 2.0 {
+        ("below 2", 2.0)
+    } else {
+        ("above 65535", 65535.0)
+    };
+    with_parts(
+        Diagnostic::new(
+            Code::HallTimer,
+            &clock.location,
+            format!(
+                "`hall_timer_clock`: {} counts {} ticks in a control period of {}, {problem}; use {}",
+                clock.given,
+                significant(ticks),
+                engineering(t_s, "s"),
+                frequency(limit / t_s),
+            ),
+        ),
+        &[period],
+    )
+}
+
+/// A sector at the minimum speed lasts longer than the Hall timer counts. `ticks`: its length;
+/// `least`: the lowest accepted speed, rad/s; `clock`: the fastest accepted capture clock, hertz
+/// (none when edges are sampled).
+pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -> Diagnostic {
+    let slower = clock.map_or_else(
+        || ", or lengthen the control period".to_owned(),
+        |clock| {
+            format!(
+                ", or lower `hall_timer_clock` to {}",
+                engineering(at_most(clock), "Hz")
+            )
+        },
+    );
+    Diagnostic::new(
+        Code::MinimumSpeed,
+        &speed.location,
+        format!(
+            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; raise the speed to {}{slower}",
+            speed.given,
+            significant(ticks.round()),
+            rpm_at_least(least),
+        ),
+    )
+}
+
+/// A speed on the wrong side of another; `relation`: the required one, `below` or `at least`.
+pub fn speed_order(speed: &Part, relation: &str, other: &Part) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::SpeedOrder,
+            &speed.location,
+            format!(
+                "`{}`: {} is not {relation} `{}` {}; change one of the two",
+                speed.field, speed.given, other.field, other.given
+            ),
+        ),
+        &[other],
+    )
+}
+
+/// Too few control periods per electrical turn at the maximum speed. `fastest`: speed with six
+/// periods, rad/s; `f_pwm`: frequency with six periods, hertz.
+pub fn too_few_periods(
+    speed: &Part,
+    period: &Part,
+    periods: f64,
+    fastest: f64,
+    f_pwm: f64,
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::TooFewPeriods,
+            &speed.location,
+            format!(
+                "`maximum_speed`: {} leaves {} control periods per electrical turn, below 6; lower it to {} or raise `f_pwm` to {}",
+                speed.given,
+                significant(periods),
+                rpm_at_most(fastest),
+                engineering(at_least(f_pwm), "Hz"),
+            ),
+        ),
+        &[period],
+    )
+}
+
+/// The dead time exceeds a tenth of the control period.
+pub fn dead_time(dead_time: &Part, t_s: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::DeadTime,
+        &dead_time.location,
+        format!(
+            "`dead_time`: {} exceeds a tenth of the control period of {}; shorten it to {} or lengthen the period",
+            dead_time.given,
+            engineering(t_s, "s"),
+            engineering(at_most(t_s / 10.0), "s"),
+        ),
+    )
+}

@@ -1,0 +1,82 @@
+//! What the field of a name takes: kind of value, bases, and examples for messages.
+
+use super::basis::Basis;
+use super::rule::{Kind, Rule};
+use super::units::Dimension;
+
+/// A name, and the rule of the field that has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FieldRule<'n> {
+    /// The name.
+    pub name: &'n str,
+    /// None where no field is called so.
+    pub rule: Option<&'static Rule>,
+}
+
+impl FieldRule<'_> {
+    /// Whether the field takes free text.
+    pub fn is_text(self) -> bool {
+        self.rule
+            .is_some_and(|rule| matches!(rule.kind, Kind::Text))
+    }
+
+    /// Whether the field takes a list of values in brackets: one of each sensed phase in place of
+    /// one for all, or of each Hall edge.
+    pub fn takes_each(self) -> bool {
+        matches!(
+            self.name,
+            "adc_gain" | "adc_offset" | "adc_inverted" | "hall_angles"
+        )
+    }
+
+    /// The quantities that the field takes; none for other kinds.
+    pub fn dimensions(self) -> &'static [Dimension] {
+        match self.rule.map(|rule| rule.kind) {
+            Some(Kind::Quantity { dimensions, .. }) => dimensions,
+            _ => &[],
+        }
+    }
+
+    /// An example of the field's value.
+    pub fn example(self) -> &'static str {
+        self.rule.map_or("20 A", |rule| rule.example)
+    }
+
+    /// Examples of the field's value, one for each possible basis, so that no basis is suggested
+    /// over another. `named`: the basis words of the given value.
+    pub fn examples(self, named: &[Basis]) -> Vec<String> {
+        let (example, references) = (self.example(), self.references());
+        let Some((own, _)) = references
+            .iter()
+            .find(|(basis, _)| example.contains(basis.word()))
+        else {
+            return vec![example.to_owned()];
+        };
+        let is_named = references.iter().any(|(basis, _)| named.contains(basis));
+        references
+            .iter()
+            .filter(|(basis, _)| !is_named || named.contains(basis))
+            .map(|(basis, _)| example.replace(own.word(), basis.word()))
+            .collect()
+    }
+
+    /// The possible bases of the field's value with their meanings; empty where there is no choice.
+    pub fn references(self) -> &'static [(Basis, &'static str)] {
+        match self.name {
+            "resistance" | "inductance" => &[
+                (Basis::PerPhase, "of one winding"),
+                (Basis::LineToLine, "between two terminals"),
+            ],
+            "back_emf" => &[
+                (Basis::Phase, "of one phase"),
+                (Basis::LineToLine, "between two terminals"),
+            ],
+            "torque_constant" => &[
+                (Basis::BlockMean, "per ampere of block commutation"),
+                (Basis::PerPeakAmpere, "per ampere of the current's peak"),
+                (Basis::PerRmsAmpere, "per ampere of its root mean square"),
+            ],
+            _ => &[],
+        }
+    }
+}
