@@ -110,13 +110,13 @@ pub fn shapes_of_extracts(kind: &str, extracts: &str) -> BTreeSet<Shape> {
             let head = line.strip_prefix("~ ");
             name = head.map(|head| match head.split_once(": ") {
                 Some((name, line)) => {
-                    shown.insert((name.to_owned(), shape_in(name, line)));
+                    shown.insert((name.to_owned(), shape_in(kind, name, line)));
                     name.to_owned()
                 }
                 None => head.to_owned(),
             });
         } else if let Some(name) = name.as_ref().filter(|_| line.starts_with("    ")) {
-            shown.insert((name.clone(), shape_in(name, line.trim())));
+            shown.insert((name.clone(), shape_in(kind, name, line.trim())));
         } else {
             whole += line;
             whole.push('\n');

@@ -5,7 +5,7 @@
 //! (`// As in`). Of its variants new units, and of known units the lines with a new shape. Of all
 //! motors and of the covering arrays the shapes of lines that appear nowhere above. A digest of every
 //! text reveals any other change: of numbers, of the order of lines, of function heads, of the
-//! arguments of stages, of the width of products, of C's comments.
+//! arguments of stages, of the width of products, of C's comments, of a name in a line of C.
 //!
 //! In extracts `=` begins a drive, `+` new units, `~` lines of a known unit.
 //! `INSTA_UPDATE=always cargo test -p hexagen-tests --test snapshots` writes all of them; a person

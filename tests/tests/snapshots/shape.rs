@@ -7,14 +7,44 @@ pub type Shape = (String, String);
 const CALLERS: [&str; 2] = ["step", "track"];
 
 /// The shape of a unit's line: masked, and of calls of stages without the arguments. These are what
-/// the stage's own lines read; a head has them, too.
-pub fn shape_in(unit: &str, line: &str) -> String {
+/// the stage's own lines read; a head has them, too. Of C how operators are spelt: both languages
+/// print one plan, and Rust's lines have the names.
+pub fn shape_in(kind: &str, unit: &str, line: &str) -> String {
     let shape = shape(line);
-    if CALLERS.contains(&unit) {
+    let shape = if CALLERS.contains(&unit) {
         without_arguments(&shape)
     } else {
         shape
+    };
+    // Texts and comments.
+    let has_words = shape.contains('"') || shape.contains("/*");
+    if kind == "c99" && !has_words {
+        without_names(&shape)
+    } else {
+        shape
     }
+}
+
+/// A line of C whose values are all called `x`.
+fn without_names(line: &str) -> String {
+    const WORDS: [&str; 9] = [
+        "const", "static", "return", "if", "else", "bool", "true", "false", "void",
+    ];
+    let is_part = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '#');
+    let (mut shape, mut rest) = (String::new(), line);
+    while !rest.is_empty() {
+        let end = rest.find(|letter| !is_part(letter)).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        let is_name = word.starts_with(|first: char| first.is_ascii_lowercase())
+            && !word.starts_with("hexagen_")
+            && !word.ends_with("_t")
+            && !WORDS.contains(&word);
+        shape += if is_name { "x" } else { word };
+        let other = after.chars().next().map_or(0, char::len_utf8);
+        shape += &after[..other];
+        rest = &after[other..];
+    }
+    shape
 }
 
 /// A statement whose calls of stages have no arguments.
@@ -36,8 +66,8 @@ fn without_arguments(statement: &str) -> String {
 
 /// Whether a word before a bracket names a stage: no method, type or operator.
 fn is_stage(word: &str) -> bool {
-    let operators = ["row", "lookup", "select"];
-    let families = ["hexagen_", "mul_", "divide"];
+    let operators = ["row", "lookup", "select", "divide", "divide_narrow"];
+    let families = ["hexagen_", "mul_"];
     word.starts_with(|first: char| first.is_ascii_lowercase())
         && word
             .chars()
@@ -172,8 +202,21 @@ mod tests {
             ("row(&ROWS, vector).legs", "row(&ROWS, vector).legs"),
             ("limit( state, [u] ) } else {", "limit(..) } else {"),
         ] {
-            assert_eq!(shape_in("step", line), expected);
-            assert_eq!(shape_in("model_emf", line), line);
+            assert_eq!(shape_in("rust", "step", line), expected);
+            assert_eq!(shape_in("rust", "model_emf", line), line);
+        }
+    }
+
+    #[test]
+    fn values_of_c_are_nameless() {
+        for (line, expected) in [
+            (
+                "const int32_t a = hexagen_min(b, V_BUS);",
+                "const int32_t x = hexagen_min(x, x);",
+            ),
+            ("*u_out = c ? e_a : 0;", "*x = x ? x : #;"),
+        ] {
+            assert_eq!(shape_in("c99", "fold", line), expected);
         }
     }
 }

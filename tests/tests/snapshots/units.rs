@@ -7,6 +7,8 @@ use crate::shape::{Shape, shape, shape_in};
 /// A named piece of an emitted text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unit {
+    /// The kind of the text.
+    kind: &'static str,
     /// Its name in every drive.
     pub name: String,
     /// Its text as emitted.
@@ -16,8 +18,9 @@ pub struct Unit {
 }
 
 impl Unit {
-    fn of(name: &str, text: &[&str], lines: Vec<String>) -> Self {
+    fn of(kind: &'static str, name: &str, text: &[&str], lines: Vec<String>) -> Self {
         Self {
+            kind,
             name: shape(name),
             text: text.join("\n"),
             lines,
@@ -26,7 +29,10 @@ impl Unit {
 
     /// The shape of each of its lines.
     pub fn shapes(&self) -> impl Iterator<Item = Shape> {
-        let shapes = self.lines.iter().map(|line| shape_in(&self.name, line));
+        let shapes = self
+            .lines
+            .iter()
+            .map(|line| shape_in(self.kind, &self.name, line));
         shapes.map(|shape| (self.name.clone(), shape))
     }
 }
@@ -44,8 +50,8 @@ pub fn units(kind: &str, text: &str) -> Vec<Unit> {
 /// Items of a text of code, as many as were emitted; of C without comments.
 pub fn items(kind: &str, text: &str) -> Vec<Unit> {
     match kind {
-        "c99" => of_code(&without_comments(text)),
-        _ => of_code(text),
+        "c99" => of_code("c99", &without_comments(text)),
+        _ => of_code("rust", text),
     }
 }
 
@@ -58,7 +64,7 @@ fn without_comments(code: &str) -> String {
 }
 
 /// Items of Rust or C, with their documentation. Blocks of items are not items themselves.
-fn of_code(text: &str) -> Vec<Unit> {
+fn of_code(kind: &'static str, text: &str) -> Vec<Unit> {
     let (mut units, mut taken, mut depth) = (vec![], vec![], 0);
     let mut open = 0;
     let mut reader = Reader::default();
@@ -93,7 +99,12 @@ fn of_code(text: &str) -> Vec<Unit> {
             if opens && line.ends_with('{') && !line.starts_with("extern") {
                 depth += 4;
             }
-            units.push(Unit::of(&item_name(&taken), &taken, code_lines(&taken)));
+            units.push(Unit::of(
+                kind,
+                &item_name(&taken),
+                &taken,
+                code_lines(&taken),
+            ));
             taken.clear();
             open = 0;
         }
@@ -117,7 +128,7 @@ fn with_definitions_joined(units: &[Unit]) -> Vec<Unit> {
         let lines = run.iter().flat_map(|unit| unit.lines.clone()).collect();
         let is_joined = is_definition(&run[0]);
         let name = if is_joined { "#define" } else { &run[0].name };
-        Unit::of(name, &texts, lines)
+        Unit::of("c99", name, &texts, lines)
     });
     joined.collect()
 }
@@ -231,13 +242,14 @@ fn code_lines(text: &[&str]) -> Vec<String> {
 fn by_element(line: &str) -> Vec<String> {
     const LONG: usize = 6;
     let heads = ["fn ", "static inline ", "HEXAGEN_COLD static "];
+    let is_sentence = line.ends_with('.');
     if line.ends_with('{') && heads.iter().any(|head| line.starts_with(head)) {
         return vec![];
     }
     let is_list = line.starts_with("use ") || line.contains(": ") && !line.contains('(');
     let elements = line.split_inclusive([',', ':']).map(str::trim);
     let is_rotor = line.starts_with("let Rotor {") || line.starts_with("Rotor {");
-    if is_rotor || is_list && elements.clone().count() > LONG {
+    if is_rotor || is_list && !is_sentence && elements.clone().count() > LONG {
         elements
             .filter(|element| !element.is_empty())
             .map(str::to_owned)
@@ -278,7 +290,7 @@ fn of_program(text: &str) -> Vec<Unit> {
     stages
         .map(|stage| {
             let lines = stage.iter().map(|line| line.trim().to_owned()).collect();
-            Unit::of(&name(stage[0]), stage, lines)
+            Unit::of("ir", &name(stage[0]), stage, lines)
         })
         .collect()
 }
@@ -299,7 +311,7 @@ fn of_sheet(text: &str) -> Vec<Unit> {
                     prose.read(line);
                 }
             }
-            Unit::of(section[0], section, prose.finish())
+            Unit::of("datasheet", section[0], section, prose.finish())
         })
         .collect()
 }
