@@ -147,7 +147,7 @@ impl<'b> BusCurrentLimit<'b> {
                 "begins; and the set-point withheld, which grows with what its mean exceeds a limit by and falls with what is left.",
             ],
         );
-        let [a, b, c] = self.duties(l, currents, command).0;
+        let [a, b, c] = duties(l, currents, command).0;
         named! {
             let line_new = Phases([a - c, b - c]);
         }
@@ -161,7 +161,7 @@ impl<'b> BusCurrentLimit<'b> {
             let i_counted = currents.map(|current| current >> self.shift);
         }
         let paid = line_a * i_counted.a() + line_b * i_counted.b();
-        let i_bus = match self.dead_counts(l) {
+        let i_bus = match dead_counts(l) {
             Some(dead) => paid - dead * switched(l, i_counted, command),
             None => paid,
         };
@@ -180,7 +180,7 @@ impl<'b> BusCurrentLimit<'b> {
         });
         let left = drawn.into_iter().chain(returned);
         named! {
-            let i_bus_left = left.reduce(|one, other| one.min(other)).unwrap_or(i_bus_mean_new);
+            let i_bus_left = left.reduce(Expr::min).unwrap_or(i_bus_mean_new);
             let j_withheld_new = (self.withheld.read() - k_bus_current * i_bus_left).clamp(0, most);
         }
         let ends = |words: [Memory<'b>; 2], values: Phases<'b>| words.into_iter().zip(values.0);
@@ -194,40 +194,35 @@ impl<'b> BusCurrentLimit<'b> {
             .chain(ends(self.ended, begins))
             .collect()
     }
+}
 
-    /// Compare values by which the legs conduct to the upper rail: that of an off leg whose upper diode
-    /// conducts is the whole period.
-    fn duties(
-        &self,
-        l: &Lowering<'b>,
-        currents: Phases<'b, 3>,
-        command: &Command<'b>,
-    ) -> Phases<'b, 3> {
-        if !turns_off(l) {
-            return command.compares;
-        }
-        let top = i64::from(l.spec.inverter.timer_period);
-        let doc = "The whole period, timer counts.";
-        let top = l.number("whole_period", top, doc);
-        named! {
-            let conducting = Phases::<3>::each(|x| {
-                let diode = currents.0[x].is_below(0).choose(top, 0);
-                command.legs.0[x].is(OFF).choose(diode, command.compares.0[x])
-            });
-        }
-        conducting
+/// Compare values by which the legs conduct to the upper rail: that of an off leg whose upper diode
+/// conducts is the whole period.
+fn duties<'b>(l: &Lowering<'b>, currents: Phases<'b, 3>, command: &Command<'b>) -> Phases<'b, 3> {
+    if !turns_off(l) {
+        return command.compares;
     }
+    let top = i64::from(l.spec.inverter.timer_period);
+    let doc = "The whole period, timer counts.";
+    let top = l.number("whole_period", top, doc);
+    named! {
+        let conducting = Phases::<3>::each(|x| {
+            let diode = currents.0[x].is_below(0).choose(top, 0);
+            command.legs.0[x].is(OFF).choose(diode, command.compares.0[x])
+        });
+    }
+    conducting
+}
 
-    /// Twice the timer counts that a leg's pulse loses to the dead time; with pulses and a dead time only.
-    fn dead_counts(&self, l: &Lowering<'b>) -> Option<Expr<'b>> {
-        let inverter = &l.spec.inverter;
-        let lost = inverter.dead_time / inverter.pwm_period() * f64::from(inverter.timer_period);
-        (l.spec.controller.modulates() && lost > 0.0).then(|| {
-            let dead_time = engineering(inverter.dead_time, "s");
-            let doc = format!("Twice the timer counts lost to {dead_time} of dead time.");
-            l.number("dead_counts", round_half_up(2.0 * lost) as i64, &doc)
-        })
-    }
+/// Twice the timer counts that a leg's pulse loses to the dead time; with pulses and a dead time only.
+fn dead_counts<'b>(l: &Lowering<'b>) -> Option<Expr<'b>> {
+    let inverter = &l.spec.inverter;
+    let lost = inverter.dead_time / inverter.pwm_period() * f64::from(inverter.timer_period);
+    (l.spec.controller.modulates() && lost > 0.0).then(|| {
+        let dead_time = engineering(inverter.dead_time, "s");
+        let doc = format!("Twice the timer counts lost to {dead_time} of dead time.");
+        l.number("dead_counts", round_half_up(2.0 * lost) as i64, &doc)
+    })
 }
 
 /// Whether the law turns legs off.

@@ -549,7 +549,7 @@ impl Ideal {
             line
         };
         let paid: f64 = (0..2)
-            .map(|x| (state.line_ended[x] + begins[x]) / 2.0 * i[x])
+            .map(|x| f64::midpoint(state.line_ended[x], begins[x]) * i[x])
             .sum();
         let pulsed = (0..3).filter(|&x| command.state[x] == LegState::Pulsed);
         let lost = self.dead_share * pulsed.map(|x| i[x].abs()).sum::<f64>();
