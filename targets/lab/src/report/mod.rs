@@ -72,6 +72,8 @@ pub enum Block {
     Tables(Vec<Table>),
     /// Key of the figures below.
     Legend(Vec<Key>),
+    /// Key of the variants, each of which can be switched off in all figures.
+    Switches(Vec<Switch>),
     /// Figures side by side.
     Figures {
         /// Number of figures in a row.
@@ -109,6 +111,8 @@ impl Block {
 /// A plot below its caption.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
+    /// Index of the variant that it shows, if it shows one alone.
+    pub variant: Option<usize>,
     /// Symbol before the caption.
     pub sign: Option<Sign>,
     /// Caption.
@@ -123,6 +127,7 @@ impl Figure {
     /// A plot with its caption.
     pub fn new(sign: Option<Sign>, caption: impl Into<String>, plot: Plot) -> Self {
         Self {
+            variant: None,
             sign,
             caption: caption.into(),
             plot: Some(plot),
@@ -138,6 +143,15 @@ pub struct Key {
     pub sign: Sign,
     /// Its meaning.
     pub text: String,
+}
+
+/// A variant's symbol and name, with which it is switched on and off.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Switch {
+    /// Its index in the table.
+    pub variant: usize,
+    /// Symbol and name.
+    pub key: Key,
 }
 
 /// Symbol of a plot element.
