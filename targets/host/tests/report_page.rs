@@ -31,7 +31,7 @@ fn every_section_is_there_and_linked() {
         ("errors", "Fixed point against float"),
         ("stability", "Stable ranges"),
         ("robustness", "Robustness"),
-        ("code", "Emitted code"),
+        ("code", "Specification, formulas and emitted code"),
         ("data-sheet", "Data sheet"),
         ("spec", "Specification"),
     ] {

@@ -2,6 +2,7 @@
 //!
 //! Its script draws plots with uPlot and serves the controls; without one, texts and tables remain.
 
+use super::linked::linked;
 use super::plot::plot;
 use super::texts::{code, markdown};
 use super::{RenderError, table};
@@ -142,6 +143,7 @@ fn block(block: &Block) -> Result<Markup, RenderError> {
             }
         },
         Block::Markdown(text) => markdown(text),
+        Block::Linked(of) => linked(of)?,
         Block::Code { language, text } => code(language, text)?,
     })
 }

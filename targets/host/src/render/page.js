@@ -465,6 +465,57 @@ function watchTables() {
   }
 }
 
+// Links -------------------------------------------------------------------------------------------
+
+// The places in a text as "3 7-9".
+function places(text) {
+  return text
+    .split(" ")
+    .filter(Boolean)
+    .flatMap((part) => {
+      const [from, to = from] = part.split("-").map(Number);
+      return Array.from({ length: to - from + 1 }, (_, k) => from + k);
+    });
+}
+
+// Marks fields, formulas and lines of code that belong together; each pane shows its first one,
+// except the one that was clicked in.
+function mark(box, clicked, marked) {
+  box.querySelectorAll(".linked-to").forEach((old) => old.classList.remove("linked-to"));
+  for (const pane of box.querySelectorAll(".pane")) {
+    const inside = marked.filter((node) => pane.contains(node));
+    inside.forEach((node) => node.classList.add("linked-to"));
+    if (inside.length > 0 && !pane.contains(clicked)) pane.scrollTop = inside[0].offsetTop - 40;
+  }
+}
+
+function watchLinks() {
+  for (const box of document.querySelectorAll(".linked")) {
+    const fields = [...box.querySelectorAll("[data-formulas]")];
+    const formulas = [...box.querySelectorAll("[data-lines]")];
+    const lines = [...box.querySelectorAll(".line")];
+    const ofField = fields.map((field) => places(field.dataset.formulas).map((k) => formulas[k]));
+    const ofFormula = formulas.map((of) => places(of.dataset.lines).map((k) => lines[k]));
+    const linesOf = (chosen) => chosen.flatMap((of) => ofFormula[formulas.indexOf(of)]);
+    const fieldsOf = (chosen) =>
+      fields.filter((_, k) => ofField[k].some((of) => chosen.includes(of)));
+    box.addEventListener("click", ({ target }) => {
+      const clicked = target.closest("button, .line");
+      if (!clicked) return;
+      const place = fields.indexOf(clicked);
+      let chosen = place >= 0 ? ofField[place] : [clicked];
+      if (lines.includes(clicked)) {
+        chosen = formulas.filter((_, k) => ofFormula[k].includes(clicked));
+      }
+      // A field shows what follows from it, not all else that this follows from.
+      const above = place >= 0 ? [clicked] : fieldsOf(chosen);
+      const below = lines.includes(clicked) ? [clicked] : linesOf(chosen);
+      mark(box, clicked, [...above, ...chosen, ...below]);
+    });
+  }
+}
+
 watchPlots();
 watchSwitches();
+watchLinks();
 watchTables();

@@ -41,6 +41,7 @@ fn block(block: &Block) -> String {
         Block::Details {
             summary, blocks, ..
         } => format!("{}:\n{}", typed(summary), text(blocks)),
+        Block::Linked(of) => of.code.clone(),
         Block::Markdown(text) | Block::Code { text, .. } => text.clone(),
     }
 }

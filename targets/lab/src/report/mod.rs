@@ -92,6 +92,8 @@ pub enum Block {
     },
     /// A text in Markdown.
     Markdown(String),
+    /// Specification, formulas and code side by side.
+    Linked(Linked),
     /// A text in a programming language.
     Code {
         /// File extension: "rs", "toml".
@@ -152,6 +154,19 @@ pub struct Switch {
     pub variant: usize,
     /// Symbol and name.
     pub key: Key,
+}
+
+/// A specification, the formulas that follow from it, and the code that computes them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Linked {
+    /// The fields as written, with the formulas that each bears on.
+    pub fields: Vec<(String, Vec<usize>)>,
+    /// Name and text of each formula, with the lines of the code in which it stands, its own first.
+    pub formulas: Vec<(String, String, Vec<usize>)>,
+    /// File extension of the code's language.
+    pub language: &'static str,
+    /// The code.
+    pub code: String,
 }
 
 /// Symbol of a plot element.

@@ -61,7 +61,11 @@ pub fn results_page(data: &Results) -> Page {
             ),
             Section::new("stability", "Stable ranges", stability::blocks(data)),
             Section::new("robustness", "Robustness", robustness),
-            Section::new("code", "Emitted code", texts::code(data)),
+            Section::new(
+                "code",
+                "Specification, formulas and emitted code",
+                texts::linked(data),
+            ),
             Section::new("data-sheet", "Data sheet", texts::data_sheet(data)),
             Section::new("spec", "Specification", texts::spec(data)),
         ],
