@@ -60,7 +60,7 @@ fn tables_and_figures_are_there_in_the_papers_order() {
     assert!(places.is_sorted(), "{places:?}");
     // Figures 2, 3, 4, 9, 12 and 13; per speed seven runs (one drive trips) as current, torque and
     // trajectory, four spectra and two harmonics; two torque-speed plots.
-    let plots = PAGE.matches("<svg class=\"plot\"").count();
+    let plots = PAGE.matches("<div class=\"plot\"").count();
     assert_eq!(plots, 9 + 2 * (3 * 7 + 4 + 2) + 2);
 }
 

@@ -73,8 +73,11 @@ struct Forwarded {
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Test => steps::checker().and_then(|()| checks()),
+        Command::Test => steps::checker()
+            .and_then(|()| steps::browser())
+            .and_then(|()| checks()),
         Command::Nightly { steps } => steps::checker()
+            .and_then(|()| steps::browser())
             .and_then(|()| steps::certificate_checker())
             .and_then(|()| checks())
             .and_then(|()| steps::run(&steps::long_checks(steps)?)),
@@ -89,7 +92,9 @@ fn main() -> ExitCode {
         Command::Marks => steps::run(&[steps::bench("marks", &[])]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
         Command::CompileTime => compile_time::measure(step::root()),
-        Command::Accept => steps::checker().and_then(|()| steps::run(&steps::refresh())),
+        Command::Accept => steps::checker()
+            .and_then(|()| steps::browser())
+            .and_then(|()| steps::run(&steps::refresh())),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

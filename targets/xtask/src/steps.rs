@@ -124,6 +124,22 @@ pub fn certificate_checker() -> Result<(), String> {
     Err("`coqtop` with the library of Gappa is missing, which checks certificates; install it: `apt-get update && apt-get install --no-install-recommends coq libcoq-gappa` as root on Debian and Ubuntu, else `opam install coq-gappa`".to_owned())
 }
 
+/// Ensures that the page can be tested: as root of a Debian system, installs Chromium if it is
+/// missing.
+///
+/// # Errors
+/// As [`checker`].
+pub fn browser() -> Result<(), String> {
+    let runs = || {
+        let version = Command::new("chromium").arg("--version").output();
+        version.is_ok_and(|output| output.status.success()) || env::var_os("CHROME").is_some()
+    };
+    if runs() || (is_root() && install("chromium") && runs()) {
+        return Ok(());
+    }
+    Err("`chromium` is missing, in which the report's page is tested; install it: `apt-get update && apt-get install --no-install-recommends chromium` as root on Debian and Ubuntu, else from https://www.chromium.org, and name it by the variable CHROME".to_owned())
+}
+
 /// Whether this process may install packages.
 fn is_root() -> bool {
     let user = Command::new("id").arg("-u").output();

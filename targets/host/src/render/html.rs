@@ -1,17 +1,26 @@
-//! Pages as HTML: one self-contained file without scripts or external resources.
+//! Pages as HTML: one self-contained file without external resources.
+//!
+//! Its script draws plots with uPlot and serves the controls; without one, texts and tables remain.
 
-use super::svg::svg;
+use super::linked::linked;
+use super::plot::plot;
 use super::texts::{code, markdown};
 use super::{RenderError, table};
 use hexagen_lab::report::{
-    AXIS, Block, Color, DEMAND, Figure, GRID, IDEAL, INK, Key, PHASES, Page, Sign, Span, VARIANTS,
-    spans,
+    AXIS, Block, Color, DEMAND, Figure, GRID, IDEAL, INK, Key, PHASES, Page, Sign, Span, Switch,
+    VARIANTS, spans,
 };
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use std::fmt::Write;
 
-/// Style sheet, without the rules for plots in the dark scheme.
+/// Style sheet, without the colours of plots in the dark scheme.
 const STYLE: &str = include_str!("page.css");
+
+/// The page's script.
+const SCRIPT: &str = include_str!("page.js");
+
+/// Plot library and its style sheet, as published (vendor/uplot/README.md).
+const LIBRARY: &str = include_str!("../../vendor/uplot/uPlot.iife.min.js");
+const LIBRARY_STYLE: &str = include_str!("../../vendor/uplot/uPlot.min.css");
 
 /// Colours that the dark scheme replaces; the others are readable in both.
 const DARK: [(Color, &str); 13] = [
@@ -48,11 +57,16 @@ pub fn html(page: &Page) -> Result<String, RenderError> {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (page.title) }
-                style { (PreEscaped(STYLE)) (PreEscaped(dark_rules())) }
+                style {
+                    (PreEscaped(LIBRARY_STYLE)) (PreEscaped(STYLE)) (PreEscaped(dark_colors()))
+                }
             }
             body {
                 header {
                     h1 { (page.heading) }
+                    noscript {
+                        p { "Plots, switches and sorting need JavaScript, which is off; texts and tables do not." }
+                    }
                     (opening)
                     nav {
                         @for section in &page.sections {
@@ -68,7 +82,11 @@ pub fn html(page: &Page) -> Result<String, RenderError> {
                         }
                     }
                 }
-                footer { p { "Written by " (page.generator) "." } }
+                footer {
+                    p { "Written by " (page.generator) ". Plots: uPlot, MIT licence, Leon Sorokin." }
+                }
+                script { (PreEscaped(LIBRARY)) }
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     };
@@ -76,23 +94,21 @@ pub fn html(page: &Page) -> Result<String, RenderError> {
 }
 
 /// The colour as CSS writes it and as plots contain it.
-fn css(Color(red, green, blue): Color) -> String {
+pub fn css(Color(red, green, blue): Color) -> String {
     format!("#{red:02X}{green:02X}{blue:02X}")
 }
 
-/// Rules that redraw plots and swatches for a dark ground.
-fn dark_rules() -> String {
-    let mut rules = "@media (prefers-color-scheme: dark) {\n".to_owned();
-    for (light, dark) in DARK {
-        let light = css(light);
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            rules,
-            ".plot [stroke=\"{light}\"],.swatch [stroke=\"{light}\"]{{stroke:{dark}}}\
-             .plot [fill=\"{light}\"],.swatch [fill=\"{light}\"]{{fill:{dark}}}"
-        );
-    }
-    rules + "}"
+/// The colour as an attribute of a drawing, in the scheme of the page.
+fn themed(color: Color) -> String {
+    let css = css(color);
+    format!("var(--c{}, {css})", &css[1..])
+}
+
+/// The colours of drawings on a dark ground; plots look them up by the same names.
+fn dark_colors() -> String {
+    let dark = DARK.map(|(light, dark)| format!("--c{}:{dark}", &css(light)[1..]));
+    let dark = dark.join(";");
+    format!("@media screen and (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}")
 }
 
 fn blocks(blocks: &[Block]) -> Result<Markup, RenderError> {
@@ -114,6 +130,7 @@ fn block(block: &Block) -> Result<Markup, RenderError> {
             }
         },
         Block::Legend(keys) => legend(keys),
+        Block::Switches(switches) => row_of_switches(switches),
         Block::Figures { columns, figures } => row_of_figures(*columns, figures)?,
         Block::Details {
             summary,
@@ -126,6 +143,7 @@ fn block(block: &Block) -> Result<Markup, RenderError> {
             }
         },
         Block::Markdown(text) => markdown(text),
+        Block::Linked(of) => linked(of)?,
         Block::Code { language, text } => code(language, text)?,
     })
 }
@@ -162,6 +180,21 @@ fn legend(keys: &[Key]) -> Markup {
     }
 }
 
+/// Buttons that switch variants on and off, on at first.
+fn row_of_switches(switches: &[Switch]) -> Markup {
+    html! {
+        ul.legend {
+            @for Switch { variant, key } in switches {
+                li {
+                    button data-variant=(variant) aria-pressed="true" {
+                        (sign(key.sign)) span { (prose(&key.text)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// A legend's sign, as in captions and tables.
 pub fn sign(sign: Sign) -> Markup {
     let drawn = match sign {
@@ -169,16 +202,16 @@ pub fn sign(sign: Sign) -> Markup {
         Sign::Line(color, width, (dash, gap)) => {
             let dashes = (gap > 0.0).then(|| format!("{dash} {gap}"));
             html! {
-                line x1="1" y1="6" x2="29" y2="6" stroke=(css(color)) stroke-width=(width)
+                line x1="1" y1="6" x2="29" y2="6" stroke=(themed(color)) stroke-width=(width)
                     stroke-dasharray=[dashes] {}
             }
         }
         Sign::Field(color, opacity) => html! {
-            rect x="1" y="1" width="28" height="10" fill=(css(color)) opacity=(opacity) {}
+            rect x="1" y="1" width="28" height="10" fill=(themed(color)) opacity=(opacity) {}
         },
-        Sign::Dot(color) => html! { circle cx="15" cy="6" r="4" fill=(css(color)) {} },
+        Sign::Dot(color) => html! { circle cx="15" cy="6" r="4" fill=(themed(color)) {} },
         Sign::Cross(color) => html! {
-            path d="M11 2 L19 10 M11 10 L19 2" stroke=(css(color)) stroke-width="2" fill="none" {}
+            path d="M11 2 L19 10 M11 10 L19 2" stroke=(themed(color)) stroke-width="2" fill="none" {}
         },
     };
     html! { svg.swatch viewBox="0 0 30 12" aria-hidden="true" { (drawn) } }
@@ -204,10 +237,10 @@ fn row_of_figures(columns: usize, figures: &[Figure]) -> Result<Markup, RenderEr
 }
 
 fn figure(figure: &Figure) -> Result<Markup, RenderError> {
-    let plot = figure.plot.as_ref().map(svg).transpose()?;
+    let plot = figure.plot.as_ref().map(plot).transpose()?;
     let is_empty = plot.is_none();
     Ok(html! {
-        figure.nothing[is_empty] {
+        figure.nothing[is_empty] data-variant=[figure.variant] {
             @if !figure.caption.is_empty() {
                 figcaption {
                     @if let Some(of) = figure.sign { (sign(of)) }

@@ -1,7 +1,8 @@
 //! Renderers of the laboratory's reports for HTML and terminals; JSON needs none.
 
 mod html;
-mod svg;
+mod linked;
+mod plot;
 mod table;
 pub mod terminal;
 mod texts;
@@ -25,9 +26,9 @@ pub enum RenderError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A plot could not be drawn.
-    #[error("cannot draw a plot: {0}")]
-    Plot(String),
+    /// A plot could not be written as JSON.
+    #[error("cannot write a plot: {0}")]
+    Plot(#[from] serde_json::Error),
     /// Emitted code could not be highlighted.
     #[error("cannot highlight code: {0}")]
     Highlight(String),

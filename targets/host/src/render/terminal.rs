@@ -27,6 +27,8 @@ fn block(block: &Block) -> String {
             titled.collect::<Vec<_>>().join("\n")
         }
         Block::Legend(keys) => legend(keys),
+        // Nothing is switched on a terminal.
+        Block::Switches(_) => String::new(),
         Block::Figures { figures, .. } => {
             let captions = figures
                 .iter()
@@ -39,6 +41,7 @@ fn block(block: &Block) -> String {
         Block::Details {
             summary, blocks, ..
         } => format!("{}:\n{}", typed(summary), text(blocks)),
+        Block::Linked(of) => of.code.clone(),
         Block::Markdown(text) | Block::Code { text, .. } => text.clone(),
     }
 }

@@ -5,32 +5,95 @@ use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::html::push_html;
 use pulldown_cmark::{Event, HeadingLevel, Options, Parser, Tag, TagEnd};
 use std::sync::LazyLock;
-use syntect::html::{ClassStyle, ClassedHTMLGenerator};
-use syntect::parsing::SyntaxSet;
+use syntect::easy::ScopeRegionIterator;
+use syntect::parsing::{ParseState, Scope, ScopeStack, SyntaxSet};
 use syntect::util::LinesWithEndings;
 
-/// Prefix of the classes, as the style sheet has it.
-const STYLE: ClassStyle = ClassStyle::SpacedPrefixed { prefix: "s-" };
-
 static SYNTAXES: LazyLock<SyntaxSet> = LazyLock::new(SyntaxSet::load_defaults_newlines);
+
+/// Classes of tokens with the scopes that they stand for, the narrower first. One letter each: a page
+/// has ten thousand tokens.
+const CLASSES: [(&str, &str); 15] = [
+    ("c", "comment"),
+    ("s", "string"),
+    ("n", "constant"),
+    ("f", "entity.name.function"),
+    ("f", "support.function"),
+    ("t", "entity.name"),
+    ("t", "support.type"),
+    ("k", "storage.type.function"),
+    ("k", "storage.type.impl"),
+    ("k", "storage.type.struct"),
+    ("t", "storage.type"),
+    ("k", "storage"),
+    ("", "keyword.operator"),
+    ("k", "keyword"),
+    ("a", "meta.annotation"),
+];
+
+static SCOPES: LazyLock<Vec<(&str, Scope)>> = LazyLock::new(|| {
+    let scopes = CLASSES.iter();
+    let scopes = scopes.filter_map(|(class, scope)| Some((*class, Scope::new(scope).ok()?)));
+    scopes.collect()
+});
+
+/// The class of a token, of its innermost scope that has one.
+fn class_of(stack: &ScopeStack) -> &'static str {
+    let class = |scope: &Scope| {
+        SCOPES
+            .iter()
+            .find(|(_, prefix)| prefix.is_prefix_of(*scope))
+    };
+    let found = stack.scopes.iter().rev().find_map(class);
+    found.map_or("", |(class, _)| class)
+}
 
 /// Source as a code block, coloured where its language is known.
 ///
 /// # Errors
 /// An error in the rules of the syntax.
 pub fn code(language: &str, source: &str) -> Result<Markup, RenderError> {
-    let Some(syntax) = SYNTAXES.find_syntax_by_extension(language) else {
-        return Ok(html! { pre { (source) } });
-    };
-    let mut generator = ClassedHTMLGenerator::new_with_class_style(syntax, &SYNTAXES, STYLE);
-    // The generator needs a line end after every line.
+    let lines = lines(language, source)?;
+    Ok(html! { pre.code { code { @for line in lines { (line) } } } })
+}
+
+/// The lines of a source, coloured where its language is known.
+///
+/// # Errors
+/// As [`code`].
+pub fn lines(language: &str, source: &str) -> Result<Vec<Markup>, RenderError> {
+    // The syntax needs a line end after every line.
     let source = format!("{}\n", source.trim_end());
+    let Some(syntax) = SYNTAXES.find_syntax_by_extension(language) else {
+        return Ok(LinesWithEndings::from(&source)
+            .map(|line| html! { (line) })
+            .collect());
+    };
+    let (mut state, mut stack) = (ParseState::new(syntax), ScopeStack::new());
+    let failed = |error: &dyn std::fmt::Display| RenderError::Highlight(error.to_string());
+    let mut coloured = Vec::new();
     for line in LinesWithEndings::from(&source) {
-        generator
-            .parse_html_for_line_which_includes_newline(line)
-            .map_err(|error| RenderError::Highlight(error.to_string()))?;
+        let changes = state
+            .parse_line(line, &SYNTAXES)
+            .map_err(|error| failed(&error))?;
+        // Neighbours of one class are one token.
+        let mut tokens: Vec<(&str, String)> = Vec::new();
+        for (text, change) in ScopeRegionIterator::new(&changes, line) {
+            stack.apply(change).map_err(|error| failed(&error))?;
+            match tokens.last_mut() {
+                Some((class, token)) if *class == class_of(&stack) || text.trim().is_empty() => {
+                    token.push_str(text);
+                }
+                _ => tokens.push((class_of(&stack), text.to_owned())),
+            }
+        }
+        coloured.push(html! {
+            @for (class, token) in tokens {
+                @if class.is_empty() { (token) } @else { i.(class) { (token) } }
+            }
+        });
     }
-    Ok(html! { pre.code { code { (PreEscaped(generator.finalize())) } } })
+    Ok(coloured)
 }
 
 /// Levels by which headings of a text are lowered, below the section's own heading.

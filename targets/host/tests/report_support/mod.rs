@@ -11,11 +11,11 @@ use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
 use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
-use hexagen_lab::engine::{EngineKind, Model};
+use hexagen_lab::engine::{EngineKind, Model, PlantOptions, SelectedMotor};
 use hexagen_lab::plant::{PlantParams, Truth};
 use hexagen_lab::results::{
-    Capture, DesignRow, ErrorsSeen, GeneratedTexts, Own, Record, Results, Run, RunPoint, SameWords,
-    SignalError, SpeedMark, Variant, Verification, design_table,
+    Capture, DesignRow, ErrorsSeen, GeneratedTexts, Own, PAPER_MOTOR, Record, Results, Run,
+    RunPoint, SameWords, SignalError, SpeedMark, Variant, Verification, design_table, links,
 };
 use hexagen_lab::robustness::{Cell, Column, DisturbedFigures, Heat, Outcome, Robustness};
 use hexagen_lab::stability::{Parameter, Stability, StabilityCheck};
@@ -340,6 +340,10 @@ fn robustness() -> Robustness {
     }
 }
 
+fn paper_motor() -> SelectedMotor {
+    SelectedMotor::find(PAPER_MOTOR, &PlantOptions::default()).expect("is in the library")
+}
+
 /// Data of a page with three variants.
 pub fn data() -> Results {
     let fine = Options {
@@ -360,6 +364,16 @@ pub fn data() -> Results {
         label: label.to_owned(),
         percent,
     };
+    let variants = vec![
+        variant("PDCC three_phase, nearest", NEAREST, fine, true),
+        variant("PDCC three_phase, keep_angle", PAIR, keep_angle, false),
+        variant(
+            "PDCC three_phase, proportional",
+            PROPORTIONAL,
+            proportional,
+            false,
+        ),
+    ];
     Results {
         generator: "hexagen 0.1.0".to_owned(),
         name: spec.name,
@@ -376,20 +390,12 @@ pub fn data() -> Results {
             steps: 10_000_000,
             mismatches: 0,
         }),
-        variants: vec![
-            variant("PDCC three_phase, nearest", NEAREST, fine, true),
-            variant("PDCC three_phase, keep_angle", PAIR, keep_angle, false),
-            variant(
-                "PDCC three_phase, proportional",
-                PROPORTIONAL,
-                proportional,
-                false,
-            ),
-        ],
         own: Some(Own {
             variant: 0,
             operations: 153,
         }),
+        links: links(&paper_motor(), &variants[0].generated.as_ref().expect("is shown").rust),
+        variants,
         errors: vec![errors("pdcc", 32, 9.4e-6), errors("phcc", 16, 0.24)],
         robustness: Some(robustness()),
         marks: vec![

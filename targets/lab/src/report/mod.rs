@@ -72,6 +72,8 @@ pub enum Block {
     Tables(Vec<Table>),
     /// Key of the figures below.
     Legend(Vec<Key>),
+    /// Key of the variants, each of which can be switched off in all figures.
+    Switches(Vec<Switch>),
     /// Figures side by side.
     Figures {
         /// Number of figures in a row.
@@ -90,6 +92,8 @@ pub enum Block {
     },
     /// A text in Markdown.
     Markdown(String),
+    /// Specification, formulas and code side by side.
+    Linked(Linked),
     /// A text in a programming language.
     Code {
         /// File extension: "rs", "toml".
@@ -109,6 +113,8 @@ impl Block {
 /// A plot below its caption.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
+    /// Index of the variant that it shows, if it shows one alone.
+    pub variant: Option<usize>,
     /// Symbol before the caption.
     pub sign: Option<Sign>,
     /// Caption.
@@ -123,6 +129,7 @@ impl Figure {
     /// A plot with its caption.
     pub fn new(sign: Option<Sign>, caption: impl Into<String>, plot: Plot) -> Self {
         Self {
+            variant: None,
             sign,
             caption: caption.into(),
             plot: Some(plot),
@@ -138,6 +145,28 @@ pub struct Key {
     pub sign: Sign,
     /// Its meaning.
     pub text: String,
+}
+
+/// A variant's symbol and name, with which it is switched on and off.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Switch {
+    /// Its index in the table.
+    pub variant: usize,
+    /// Symbol and name.
+    pub key: Key,
+}
+
+/// A specification, the formulas that follow from it, and the code that computes them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Linked {
+    /// The fields as written, with the formulas that each bears on.
+    pub fields: Vec<(String, Vec<usize>)>,
+    /// Name and text of each formula, with the lines of the code in which it stands, its own first.
+    pub formulas: Vec<(String, String, Vec<usize>)>,
+    /// File extension of the code's language.
+    pub language: &'static str,
+    /// The code.
+    pub code: String,
 }
 
 /// Symbol of a plot element.

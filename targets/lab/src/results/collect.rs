@@ -2,7 +2,7 @@
 
 use super::{
     Capture, ErrorsSeen, Own, PAPER_MOTOR, Planned, Results, SPEEDS, SpeedMark, Variant,
-    Verification, design_table, held, own_row,
+    Verification, design_table, held, links, own_row,
 };
 use crate::accuracy::{WORDS, at_speeds, one_step, with_word};
 use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor};
@@ -86,6 +86,7 @@ impl Plan {
             .ok();
         let data = Results {
             verification: Some(verification(&checked)),
+            links: links(&self.motor, &self.own.rust()),
             errors,
             robustness,
             ..self.results(variants)
@@ -104,8 +105,10 @@ impl Plan {
 
     fn simulate(&self, progress: &dyn Progress) -> Result<Vec<Variant>, LabError> {
         progress.begin("simulating", self.rows.len() as u64);
+        // Code and data sheet are those of the motor file's own controller.
+        let shown = (!self.is_expected).then(|| own_row().label);
         let variants = self.rows.par_iter().map(|row| {
-            let variant = row.run(row.row.label == SHOWN);
+            let variant = row.run(shown == Some(row.row.label));
             progress.advance(1);
             variant
         });
@@ -132,6 +135,7 @@ impl Plan {
                 variant: 0,
                 operations: PathCost::of_function(step).worst.total(),
             }),
+            links: Vec::new(),
             errors: Vec::new(),
             robustness: None,
             marks: if self.is_paper { paper_marks() } else { vec![] },
@@ -174,9 +178,6 @@ fn limited(row: &Planned) -> Option<String> {
 
 /// Steps of the bit-for-bit check per variant.
 const VERIFY_STEPS: u64 = 1_000_000;
-
-/// The row whose code and data sheet are shown: the best with three pulsed legs.
-const SHOWN: &str = "PDCC three_phase, torque_priority, advance 2, model EMF";
 
 /// The rows of the table, each prepared with the captures that the motor's file allows; a variant
 /// that cannot be generated is a note.

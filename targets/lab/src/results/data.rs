@@ -4,6 +4,7 @@
 //! computes only plots, harmonics and differences; empty parts are left out of the page.
 
 use super::expected::Expected;
+use super::links::FieldLinks;
 use crate::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
 use crate::engine::Model;
 use crate::robustness::Robustness;
@@ -40,6 +41,8 @@ pub struct Results {
     pub variants: Vec<Variant>,
     /// The motor file's own controller; none where the table alone is wanted.
     pub own: Option<Own>,
+    /// What of the own controller's code follows from each field of the specification.
+    pub links: Vec<FieldLinks>,
     /// Errors of single steps of the default controllers, per word length, in the plots' order.
     pub errors: Vec<ErrorsSeen>,
     /// The default controllers on plants that differ from the motor file.

@@ -3,6 +3,7 @@
 mod collect;
 mod data;
 mod expected;
+mod links;
 mod planned;
 
 pub use collect::Plan;
@@ -14,6 +15,7 @@ pub use expected::{
     Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
     judge_mean, judge_pp, judge_rms, own_row,
 };
+pub use links::{FieldLinks, Item, items, links};
 pub use planned::{Planned, held};
 
 /// The motor of the paper.

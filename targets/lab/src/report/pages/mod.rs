@@ -1,6 +1,7 @@
 //! The pages: contents of the motor's report and of the paper's experiment, in order.
 
 mod accuracy;
+mod commutation;
 mod facts;
 mod paper;
 mod robustness;
@@ -17,7 +18,7 @@ pub use robustness::robustness_blocks;
 pub use table::{results_blocks, variants_table};
 pub use verdict::verdict;
 
-use super::{Block, Key, PHASES, Page, Section, Sign, variant};
+use super::{Block, Color, Key, PHASES, Page, Section, Sign, Switch, variant};
 use crate::results::{Capture, Results, Variant};
 
 /// The report of a motor.
@@ -30,7 +31,12 @@ pub fn results_page(data: &Results) -> Page {
         file: format!("report-{}", file_stem(&data.file)),
         title: facts::title(data),
         heading: facts::motor_name(data).to_owned(),
-        opening: [verdict::verdict_blocks(data), facts::opening(data)].concat(),
+        opening: [
+            verdict::verdict_blocks(data),
+            commutation::blocks(data),
+            facts::opening(data),
+        ]
+        .concat(),
         sections: vec![
             Section::new("motor", "Motor and inverter", facts::facts(data)),
             Section::new("results", "Results", results_blocks(data)),
@@ -55,7 +61,11 @@ pub fn results_page(data: &Results) -> Page {
             ),
             Section::new("stability", "Stable ranges", stability::blocks(data)),
             Section::new("robustness", "Robustness", robustness),
-            Section::new("code", "Emitted code", texts::code(data)),
+            Section::new(
+                "code",
+                "Specification, formulas and emitted code",
+                texts::linked(data),
+            ),
             Section::new("data-sheet", "Data sheet", texts::data_sheet(data)),
             Section::new("spec", "Specification", texts::spec(data)),
         ],
@@ -77,7 +87,21 @@ fn file_stem(name: &str) -> String {
 
 /// The symbol of a variant by its index in the table.
 fn variant_sign(index: usize) -> Sign {
-    Sign::line(variant(index), 3.0)
+    as_line(variant(index))
+}
+
+/// Switches of the plotted variants.
+fn switches(data: &Results, sign: fn(Color) -> Sign) -> Block {
+    let switches = plotted(data).map(|(index, of)| Switch {
+        variant: index,
+        key: sign(variant(index)).means(of.label.clone()),
+    });
+    Block::Switches(switches.collect())
+}
+
+/// A line as the symbol of a variant.
+fn as_line(color: Color) -> Sign {
+    Sign::line(color, 3.0)
 }
 
 /// Key of the phases' colours.

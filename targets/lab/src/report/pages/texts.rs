@@ -1,14 +1,65 @@
-//! Emitted code, data sheet and specification, folded.
+//! Emitted code beside its specification; data sheet and normalised specification, folded.
 
-use crate::report::Block;
-use crate::results::{GeneratedTexts, Results};
+use crate::report::{Block, Linked};
+use crate::results::{GeneratedTexts, Item, Results, items};
 
-/// Emitted Rust.
-pub fn code(data: &Results) -> Vec<Block> {
-    folded(data, "emitted code", |texts| {
-        let lines = format!(", {} lines of Rust", texts.rust.lines().count());
-        (lines, code_block("rs", &texts.rust))
-    })
+/// The own controller's specification, formulas and code side by side; the code alone where no
+/// links are known.
+pub fn linked(data: &Results) -> Vec<Block> {
+    let shown = data
+        .variants
+        .iter()
+        .find_map(|variant| variant.generated.as_ref());
+    let Some(texts) = shown else {
+        return Block::nothing("emitted code");
+    };
+    let note = "A click on a field, a formula or a line of code marks what belongs to it in the other two. A formula belongs to a field if \
+                its code differs once the field does: by 1 % for a number, by 1 for a count, by another choice for a word.";
+    let items = items(&texts.rust);
+    let place = |name: &String| items.iter().position(|item| item.name == *name);
+    let fields = data.links.iter().map(|field| {
+        let default = if field.is_default { " (default)" } else { "" };
+        let text = format!(
+            "{}.{} = {}{default}",
+            field.section, field.name, field.value
+        );
+        (text, field.items.iter().filter_map(place).collect())
+    });
+    let formulas = items.iter().map(|item| {
+        // Ranges stand in the data sheet.
+        let text = item.text.split(" Proven:").next().unwrap_or_default();
+        (
+            item.name.clone(),
+            text.to_owned(),
+            lines_of(item, &texts.rust),
+        )
+    });
+    vec![
+        Block::Note(note.to_owned()),
+        Block::Linked(Linked {
+            fields: fields.collect(),
+            formulas: formulas.collect(),
+            language: "rs",
+            code: texts.rust.clone(),
+        }),
+    ]
+}
+
+/// The lines of an item, and those that use it by its name.
+fn lines_of(item: &Item, rust: &str) -> Vec<usize> {
+    let uses = |line: &str| {
+        let is_code = !line.trim_start().starts_with("///");
+        is_code
+            && line
+                .split(|c: char| !c.is_alphanumeric() && c != '_')
+                .any(|word| word == item.name)
+    };
+    let used = rust.lines().enumerate();
+    let used = used.filter(|(place, line)| !item.lines.contains(place) && uses(line));
+    item.lines
+        .clone()
+        .chain(used.map(|(place, _)| place))
+        .collect()
 }
 
 /// Data sheets.

@@ -2,7 +2,7 @@
 
 use crate::closed_loop::{Held, LimitOutcome, Side};
 use crate::report::plot::{Curve, TorqueSpeed, dash, torque_speed};
-use crate::report::{Block, Figure, Sign, variant};
+use crate::report::{Block, Figure, Sign, Switch, variant};
 use crate::results::{Results, Variant};
 use crate::text::{TorqueScale, number};
 use std::f64::consts::TAU;
@@ -18,6 +18,7 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     }
     let scale = TorqueScale::of(data.torque);
     let curves = variants.iter().map(|&(index, of)| Curve {
+        name: of.label.clone(),
         color: variant(index),
         index,
         points: of
@@ -37,7 +38,11 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     });
     let keys = variants.iter().map(|&(index, of)| {
         let text = format!("{}{}", of.label, limit_text(of, &scale));
-        Sign::Line(variant(index), 3.0, dash(index)).means(text)
+        let key = Sign::Line(variant(index), 3.0, dash(index)).means(text);
+        Switch {
+            variant: index,
+            key,
+        }
     });
     let held = match data.held {
         Held::AtLeast => "falls below 97 %",
@@ -48,7 +53,7 @@ pub fn blocks(data: &Results) -> Vec<Block> {
          set-point). Curves end where the search for this limit ended."
     );
     vec![
-        Block::Legend(keys.collect()),
+        Block::Switches(keys.collect()),
         Block::Note(note),
         Block::Figures {
             columns: 1,

@@ -1,6 +1,6 @@
 //! Phase currents, trajectory and torque over one electrical turn.
 
-use super::{phase_keys, plotted};
+use super::{as_line, phase_keys, plotted, switches};
 use crate::closed_loop::Trace;
 use crate::report::plot::{Columns, Wave, columns, ideal_phase, torque_range, trajectory, wave};
 use crate::report::{Block, Color, DEMAND, Figure, IDEAL, Key, PHASES, Plot, Sign, variant};
@@ -12,6 +12,8 @@ const COLUMNS: usize = 480;
 
 /// A plotted record.
 pub struct Panel<'a> {
+    /// Index of its variant among those that can be switched off.
+    pub variant: Option<usize>,
     /// Colour of its lines.
     pub color: Color,
     /// Subject, for screen readers: "PDCC at 400 rpm".
@@ -29,6 +31,7 @@ impl Panel<'_> {
     pub fn figure(&self, plot: impl FnOnce() -> Plot) -> Figure {
         let nothing = self.nothing.as_ref();
         Figure {
+            variant: self.variant,
             sign: Some(Sign::line(self.color, 3.0)),
             caption: self.caption.clone(),
             plot: nothing.is_none().then(plot),
@@ -42,14 +45,14 @@ pub fn current_figures<'a>(
     panels: &[Panel<'a>],
     amplitude: f64,
     (what, title): (&str, &str),
-    signals: impl Fn(&Panel<'a>) -> Vec<(Color, Columns)>,
+    signals: impl Fn(&Panel<'a>) -> Vec<(String, Color, Columns)>,
     ideal: &[Vec<(f64, f64)>],
 ) -> Vec<Figure> {
     let signals: Vec<_> = panels.iter().map(signals).collect();
     let most = signals
         .iter()
         .flatten()
-        .flat_map(|(_, columns)| columns.most.iter().chain(&columns.least))
+        .flat_map(|(_, _, columns)| columns.most.iter().chain(&columns.least))
         .fold(1.1 * amplitude.abs(), |most, i| most.max(i.abs()));
     let figures = panels.iter().zip(signals).map(|(panel, signals)| {
         panel.figure(|| {
@@ -68,11 +71,16 @@ pub fn current_figures<'a>(
 
 /// The current of a phase over a turn of a record.
 pub fn phase_current(trace: &Trace, phase: usize) -> Columns {
-    columns(trace, COLUMNS, |k| match phase {
-        0 => trace.i_a[k],
-        1 => trace.i_b[k],
-        _ => -trace.i_a[k] - trace.i_b[k],
-    })
+    columns(trace, COLUMNS, |k| current_at(trace, phase, k))
+}
+
+/// The current of a phase in a bin of a record.
+pub fn current_at(trace: &Trace, phase: usize, bin: usize) -> f64 {
+    match phase {
+        0 => trace.i_a[bin],
+        1 => trace.i_b[bin],
+        _ => -trace.i_a[bin] - trace.i_b[bin],
+    }
 }
 
 /// Figures of torque, all with the same axis.
@@ -98,7 +106,7 @@ pub fn torque_figures(panels: &[Panel<'_>], demand: f64) -> Vec<Figure> {
                 description: format!("Torque of {}", panel.of),
                 title: format!("torque in {}", scale.unit),
                 range: range.clone(),
-                signals: vec![(panel.color, torque)],
+                signals: vec![("torque".to_owned(), panel.color, torque)],
                 ideal: Vec::new(),
                 demand: Some(demand),
             })
@@ -137,6 +145,7 @@ fn panels<'a>(data: &'a Results, separator: &str) -> Vec<Panel<'a>> {
     let panels = records.map(|(index, of, record)| {
         let (label, rpm) = (&of.label, number(record.rpm, 0));
         Panel {
+            variant: Some(index),
             color: variant(index),
             of: format!("{label} at {rpm} rpm"),
             caption: format!("{label}{separator}**{rpm}\u{a0}rpm**"),
@@ -171,7 +180,10 @@ pub fn currents(data: &Results) -> Vec<Block> {
     let signals = |panel: &Panel<'_>| {
         let phases = PHASES.into_iter().enumerate();
         phases
-            .map(|(phase, color)| (color, phase_current(panel.trace, phase)))
+            .map(|(phase, color)| {
+                let name = format!("phase {}", ["a", "b", "c"][phase]);
+                (name, color, phase_current(panel.trace, phase))
+            })
             .collect()
     };
     let ideal = [0, 1, 2].map(|phase| ideal_phase(data.current, phase));
@@ -181,6 +193,7 @@ pub fn currents(data: &Results) -> Vec<Block> {
     let note = "Lines are means over one control period. Sectors S1 to S6 are those of the true rotor angle; the conducting pair \
                 changes at their boundaries.";
     vec![
+        switches(data, as_line),
         Block::Legend(keys),
         Block::Note(note.to_owned()),
         Block::Figures {
@@ -198,6 +211,7 @@ pub fn trajectories(data: &Results) -> Vec<Block> {
     }
     let color = variant(0);
     vec![
+        switches(data, as_line),
         Block::Legend(vec![
             ideal_key("ideal hexagon between the reference corners (circles) of sectors S1 to S6"),
             Sign::line(color, 2.5).means("mean over one control period"),
@@ -218,6 +232,7 @@ pub fn torque(data: &Results) -> Vec<Block> {
     }
     let mean = "mean over one control period, the basis of the ripple figures";
     vec![
+        switches(data, as_line),
         Block::Legend(vec![
             Sign::line(variant(0), 2.5).means(mean),
             ripple_key(variant(0)),

@@ -36,7 +36,6 @@ pub fn bars(bars: Bars<'_>) -> Plot {
     };
     let y = Axis::new(bars.y_title, &(0.0..top), 6);
     let mut plot = Plot::new(bars.description, (550.0, 270.0), x, y);
-    plot.margins.top = 18.0;
     let width = FILLED / bars.colors.len().max(1) as f64;
     for (k, (_, values, ideal)) in bars.groups.into_iter().enumerate() {
         let start = k as f64 + (1.0 - FILLED) / 2.0;
@@ -88,7 +87,6 @@ pub fn histogram(description: String, bound: f64, counts: &[u64]) -> Plot {
         ticks: powers.map(|power| (power, power_text(power))).collect(),
     };
     let mut plot = Plot::new(description, (360.0, 210.0), x, y);
-    plot.margins.top = 20.0;
     let width = 2.0 * ends / counts.len().max(1) as f64;
     for (place, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
         let left = place as f64 * width - ends;

@@ -1,4 +1,5 @@
-//! Plots: two axes and the elements between them. Lengths are in CSS pixels.
+//! Plots: two axes and the elements between them. Lengths are in CSS pixels. Margins are the
+//! renderer's, which knows the width of the screen.
 
 mod bars;
 mod plane;
@@ -11,15 +12,12 @@ pub use bars::{Bars, bars, histogram};
 pub use plane::{Named, Plane, corners, plane, ray, trajectory};
 pub use stability::{SEARCH, stability};
 pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
-pub use turn::{Level, Wave, ideal_phase, levels, torque_range, wave};
-pub use window::{Columns, FIRST_DEG, columns, means};
+pub use turn::{ANGLE, Level, Wave, ideal_phase, levels, torque_range, wave};
+pub use window::{Columns, FIRST_DEG, columns, columns_between, means};
 
-use super::palette::{AXIS, Color};
+use super::palette::Color;
 use serde::Serialize;
 use std::ops::Range;
-
-/// Estimated width of a label's character, rather too wide than too narrow.
-pub const CHARACTER: f64 = 7.2;
 
 /// A point of the plotted plane.
 pub type Point = (f64, f64);
@@ -29,10 +27,10 @@ pub type Point = (f64, f64);
 pub struct Plot {
     /// Description for screen readers.
     pub description: String,
-    /// Width and height.
+    /// Width and height where there is room.
     pub size: (f64, f64),
-    /// Margins of the plotted area.
-    pub margins: Margins,
+    /// Whether both axes have the same scale.
+    pub is_square: bool,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
@@ -42,12 +40,12 @@ pub struct Plot {
 }
 
 impl Plot {
-    /// A plot without content, with margins for its vertical axis.
+    /// A plot without content.
     pub fn new(description: impl Into<String>, size: (f64, f64), x: Axis, y: Axis) -> Self {
         Self {
             description: description.into(),
             size,
-            margins: Margins::fitting(&y),
+            is_square: false,
             x,
             y,
             elements: Vec::new(),
@@ -57,6 +55,11 @@ impl Plot {
     /// Adds an element on top.
     pub fn add(&mut self, element: Element) {
         self.elements.push(element);
+    }
+
+    /// Adds a signal.
+    pub fn series(&mut self, series: Series) {
+        self.add(Element::Series(series));
     }
 
     /// Draws a line.
@@ -85,46 +88,6 @@ impl Plot {
             size,
             anchor: (Side::Middle, Side::End),
         }));
-    }
-
-    /// Draws a frame around the plotted area.
-    pub fn frame(&mut self) {
-        let ((left, right), (low, high)) = (self.x.range, self.y.range);
-        let corners = [
-            (left, low),
-            (left, high),
-            (right, high),
-            (right, low),
-            (left, low),
-        ];
-        self.line(corners, Stroke::solid(AXIS, 1.0));
-    }
-}
-
-/// Margins of the plotted area.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Margins {
-    /// Above.
-    pub top: f64,
-    /// To the right.
-    pub right: f64,
-    /// Below, for ticks and title.
-    pub bottom: f64,
-    /// To the left, for ticks and title.
-    pub left: f64,
-}
-
-impl Margins {
-    /// Margins for the labels of a vertical axis and its title.
-    fn fitting(y: &Axis) -> Self {
-        let longest = y.ticks.iter().map(|(_, label)| label.chars().count());
-        let labels = CHARACTER * longest.max().unwrap_or(0) as f64;
-        Self {
-            top: 8.0,
-            right: 12.0,
-            bottom: 40.0,
-            left: (30.0 + labels).max(52.0),
-        }
     }
 }
 
@@ -161,6 +124,8 @@ impl Axis {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Element {
+    /// A signal.
+    Series(Series),
     /// A line through points.
     Line {
         /// The points.
@@ -195,15 +160,58 @@ pub enum Element {
         /// Its colour.
         color: Color,
     },
-    /// A vertical line from a point upwards, which may leave the plotted area.
-    Rule {
-        /// Its foot.
-        at: Point,
-        /// Its length.
-        length: f64,
+    /// A dashed line upright through the plot, with its text above.
+    Mark {
+        /// Its place on the horizontal axis.
+        at: f64,
+        /// The words.
+        text: String,
     },
     /// A short text.
     Label(Label),
+}
+
+/// A signal: a function of the horizontal axis, whose values a pointer reads and which can be
+/// switched off.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Series {
+    /// Its name in the plot's legend.
+    pub name: String,
+    /// Index of the variant that it belongs to, if it belongs to one.
+    pub variant: Option<usize>,
+    /// Its points, ascending along the horizontal axis.
+    pub points: Vec<Point>,
+    /// Least and greatest value at each point, drawn as a pale band; empty for none.
+    pub band: Vec<Point>,
+    /// How it is drawn.
+    pub stroke: Stroke,
+    /// Whether it is switched off at first.
+    pub is_off: bool,
+}
+
+impl Series {
+    /// A signal that is drawn at first.
+    pub fn new(name: impl Into<String>, points: Vec<Point>, stroke: Stroke) -> Self {
+        Self {
+            name: name.into(),
+            variant: None,
+            points,
+            band: Vec::new(),
+            stroke,
+            is_off: false,
+        }
+    }
+
+    /// A signal in columns, with its ripple as the band; without a band if it has none.
+    pub fn of_columns(name: impl Into<String>, columns: Columns, stroke: Stroke) -> Self {
+        let has_ripple = columns.least != columns.most;
+        let band = columns.least.into_iter().zip(columns.most);
+        let points = columns.angle.into_iter().zip(columns.mean);
+        Self {
+            band: band.filter(|_| has_ripple).collect(),
+            ..Self::new(name, points.collect(), stroke)
+        }
+    }
 }
 
 /// A short text at a point.

@@ -2,7 +2,7 @@
 
 use super::super::palette::{AXIS, Color, IDEAL, INK};
 use super::window::{means, with_ripple};
-use super::{Axis, Element, Label, Margins, Plot, Point, Side, Stroke};
+use super::{Axis, Element, Label, Plot, Point, Side, Stroke};
 use crate::closed_loop::{Trace, hexagon};
 
 /// Distance of names from their points.
@@ -46,16 +46,7 @@ pub fn plane(plane: Plane<'_>) -> Plot {
         .titles
         .map(|title| Axis::new(title, &(-plane.reach..plane.reach), 8));
     let mut plot = Plot::new(plane.description, (plane.width, plane.width), x, y);
-    plot.margins.right = 10.0;
-    // The plotted area is a square.
-    let Margins {
-        top,
-        right,
-        bottom,
-        left,
-    } = plot.margins;
-    plot.size.1 += top + bottom - left - right;
-    plot.frame();
+    plot.is_square = true;
     for (points, stroke) in plane.lines {
         plot.line(points, stroke);
     }

@@ -31,7 +31,6 @@ pub fn stability(
     let x = Axis::new(x_title, &x_range, 8);
     let y = Axis::stepped("RMS torque ripple in %", &(0.0..top), y_step);
     let mut plot = Plot::new(description, (550.0, 250.0), x, y);
-    plot.margins.right = 20.0;
     let (low, high) = (range.0.max(x_range.start), range.1.min(x_range.end));
     if low < high {
         plot.block((low, 0.0), (high, top), (PHASES[0], 0.12));

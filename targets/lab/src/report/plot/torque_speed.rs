@@ -1,13 +1,10 @@
 //! Mean torque over speed, all variants in one plot, with the demand and marks.
 
-use super::super::palette::{AXIS, Color, DEMAND, INK};
-use super::{Axis, CHARACTER, Element, Label, Plot, Point, Side, Stroke, step};
+use super::super::palette::{Color, DEMAND, INK};
+use super::{Axis, Element, Label, Plot, Point, Series, Side, Stroke, step};
 use crate::closed_loop::{self, Held, TOLERANCE};
 use crate::results::SpeedMark;
 use std::ops::Range;
-
-/// Height of a row of marks in CSS pixels.
-const ROW: f64 = 17.0;
 
 /// Share of the demand at which curves are cut off.
 const LEAST: f64 = 0.8;
@@ -19,6 +16,8 @@ const DASHES: [(f64, f64); 4] = [(0.0, 0.0), (9.0, 3.0), (4.0, 3.0), (1.5, 2.5)]
 /// One variant's curve.
 #[derive(Debug)]
 pub struct Curve {
+    /// Name.
+    pub name: String,
     /// Colour.
     pub color: Color,
     /// Index in the legend, which selects the dash pattern.
@@ -59,13 +58,8 @@ pub fn torque_speed(plan: &TorqueSpeed<'_>) -> Plot {
     let y = Axis::new(format!("mean torque in {}", plan.unit), &y_range, 8);
     let description = "Mean torque over speed of all variants";
     let mut plot = Plot::new(description, (1120.0, 440.0), x, y);
-    plot.margins.right = 16.0;
-    let width = plot.size.0 - plot.margins.left - plot.margins.right;
-    let marks = place_marks(plan, &x_range, width / (x_range.end - x_range.start));
-    let rows = marks.iter().map(|mark| mark.row + 1).max().unwrap_or(0);
-    plot.margins.top = ROW * rows as f64 + 8.0;
-    for mark in &marks {
-        draw_mark(&mut plot, mark, &y_range);
+    for mark in marks(plan, &x_range) {
+        plot.add(mark);
     }
     draw_demand(&mut plot, plan, &x_range);
     for curve in &plan.curves {
@@ -118,70 +112,17 @@ fn draw_curve(plot: &mut Plot, curve: &Curve, floor: f64) {
     if let [alone] = points[..] {
         plot.add(dot(alone, Some(2.0)));
     }
-    plot.line(points, Stroke::dashed(curve.color, 2.0, dash(curve.index)));
+    let stroke = Stroke::dashed(curve.color, 2.0, dash(curve.index));
+    plot.series(Series {
+        variant: Some(curve.index),
+        ..Series::new(curve.name.clone(), points, stroke)
+    });
     let at_limit = curve
         .limit_rpm
         .and_then(|rpm| interpolated(&curve.points, rpm).map(|torque| (rpm, torque)));
     if let Some(at) = at_limit {
         plot.add(dot(at, None));
     }
-}
-
-/// A mark above the plot: its text ends at its line, in a row without any other text or line.
-struct Placed {
-    rpm: f64,
-    text: String,
-    row: usize,
-}
-
-/// Places the marks within a range of speeds; `per_rpm` is in CSS pixels.
-fn place_marks(plot: &TorqueSpeed<'_>, x_range: &Range<f64>, per_rpm: f64) -> Vec<Placed> {
-    let rated = SpeedMark {
-        label: "rated".to_owned(),
-        percent: 100.0,
-    };
-    let mut marks: Vec<&SpeedMark> = plot.marks.iter().chain([&rated]).collect();
-    marks.sort_by(|a, b| a.percent.total_cmp(&b.percent));
-    let mut placed: Vec<Placed> = Vec::new();
-    for mark in marks {
-        let rpm = mark.percent / 100.0 * plot.rated_rpm;
-        if !(x_range.start..=x_range.end).contains(&rpm) {
-            continue;
-        }
-        let text = format!("{} {:.0} %", mark.label, mark.percent);
-        let text_from = rpm - text.chars().count() as f64 * CHARACTER / per_rpm;
-        // Above all earlier marks whose lines cross the text.
-        let row = placed
-            .iter()
-            .filter(|earlier| earlier.rpm > text_from)
-            .map(|earlier| earlier.row + 1)
-            .max();
-        placed.push(Placed {
-            rpm,
-            text,
-            row: row.unwrap_or(0),
-        });
-    }
-    placed
-}
-
-fn draw_mark(plot: &mut Plot, mark: &Placed, y_range: &Range<f64>) {
-    let top = (mark.rpm, y_range.end);
-    let foot = (mark.rpm, y_range.start);
-    plot.line([top, foot], Stroke::dashed(AXIS, 1.0, (2.0, 3.0)));
-    let height = ROW * mark.row as f64;
-    plot.add(Element::Rule {
-        at: top,
-        length: height + ROW,
-    });
-    plot.add(Element::Label(Label {
-        at: top,
-        offset: (-4.0, -height - 3.0),
-        text: mark.text.clone(),
-        color: INK,
-        size: 0.95,
-        anchor: (Side::End, Side::End),
-    }));
 }
 
 /// A curve down to its first value below a torque.
@@ -208,6 +149,22 @@ fn interpolated(points: &[(f64, f64)], rpm: f64) -> Option<f64> {
             .contains(&rpm)
             .then(|| y0 + (y1 - y0) * (rpm - x0) / (x1 - x0).max(f64::MIN_POSITIVE))
     })
+}
+
+/// The marks within a range of speeds, the rated speed among them, from the slowest.
+fn marks(plan: &TorqueSpeed<'_>, x_range: &Range<f64>) -> Vec<Element> {
+    let rated = SpeedMark {
+        label: "rated".to_owned(),
+        percent: 100.0,
+    };
+    let mut marks: Vec<&SpeedMark> = plan.marks.iter().chain([&rated]).collect();
+    marks.sort_by(|a, b| a.percent.total_cmp(&b.percent));
+    let placed = marks.into_iter().map(|mark| Element::Mark {
+        at: mark.percent / 100.0 * plan.rated_rpm,
+        text: format!("{} {:.0} %", mark.label, mark.percent),
+    });
+    let is_inside = |mark: &Element| matches!(mark, Element::Mark { at, .. } if (x_range.start..=x_range.end).contains(at));
+    placed.filter(is_inside).collect()
 }
 
 /// From the curves' first to their last speed, and to the marks.

@@ -2,7 +2,7 @@
 
 use super::super::palette::{AXIS, Color, DEMAND, IDEAL};
 use super::window::{Columns, FIRST_DEG};
-use super::{Axis, CHARACTER, Element, Plot, Point, Stroke};
+use super::{Axis, Plot, Point, Series, Stroke};
 use crate::closed_loop::quasi_square;
 use std::ops::Range;
 
@@ -15,18 +15,21 @@ pub struct Wave {
     pub title: String,
     /// Vertical range.
     pub range: Range<f64>,
-    /// Each signal with its colour.
-    pub signals: Vec<(Color, Columns)>,
+    /// Each signal with its name and colour.
+    pub signals: Vec<(String, Color, Columns)>,
     /// Ideal waves, drawn wide below the signals: corners (angle in degrees, value).
     pub ideal: Vec<Vec<Point>>,
     /// A demand, drawn as a dashed line across.
     pub demand: Option<f64>,
 }
 
+/// Title of the horizontal axis.
+pub const ANGLE: &str = "electrical angle in degrees";
+
 /// An empty plot over one electrical turn.
 fn over_a_turn(description: String, height: f64, y: Axis) -> Plot {
     let turn = FIRST_DEG..FIRST_DEG + 360.0;
-    let mut x = Axis::stepped("electrical angle in degrees", &(0.0..360.0), 60.0);
+    let mut x = Axis::stepped(ANGLE, &(0.0..360.0), 60.0);
     for (at, label) in &mut x.ticks {
         *at += FIRST_DEG;
         *label = super::tick_text(*at, 0);
@@ -34,7 +37,6 @@ fn over_a_turn(description: String, height: f64, y: Axis) -> Plot {
     x.range = (turn.start, turn.end);
     let top = y.range.1;
     let mut plot = Plot::new(description, (550.0, height), x, y);
-    plot.margins.top = 22.0;
     for sector in 1..=6 {
         let middle = FIRST_DEG + 60.0 * (f64::from(sector) - 0.5);
         plot.write_above(format!("S{sector}"), (middle, top), (AXIS, 0.95));
@@ -53,23 +55,12 @@ pub fn wave(wave: Wave) -> Plot {
     if wave.range.start < 0.0 {
         plot.line(across(0.0), Stroke::solid(AXIS, 0.5));
     }
-    for (color, columns) in &wave.signals {
-        let there = columns.angle.iter().zip(&columns.most);
-        let back = columns.angle.iter().zip(&columns.least).rev();
-        plot.add(Element::Area {
-            points: there.chain(back).map(|(x, y)| (*x, *y)).collect(),
-            color: *color,
-            opacity: 0.22,
-        });
-    }
-    for (color, columns) in wave.signals {
-        let points = columns.angle.into_iter().zip(columns.mean);
-        plot.line(points, Stroke::solid(color, 1.4));
+    for (name, color, columns) in wave.signals {
+        plot.series(Series::of_columns(name, columns, Stroke::solid(color, 1.4)));
     }
     if let Some(demand) = wave.demand {
         plot.line(across(demand), Stroke::dashed(DEMAND, 1.0, (6.0, 4.0)));
     }
-    plot.frame();
     plot
 }
 
@@ -100,8 +91,6 @@ pub fn levels(description: String, signals: &[Level]) -> Plot {
             .collect(),
     };
     let mut plot = over_a_turn(description, 190.0, y);
-    // As wide as with the labels of a signal from -1.0 to 1.0.
-    plot.margins.left = 30.0 + 4.0 * CHARACTER;
     for (index, signal) in signals.iter().enumerate() {
         let points = (0..6).zip(signal.values).flat_map(|(sector, is_high)| {
             let from = FIRST_DEG + 60.0 * f64::from(sector);
@@ -110,7 +99,6 @@ pub fn levels(description: String, signals: &[Level]) -> Plot {
         });
         plot.line(points, Stroke::solid(signal.color, 2.0));
     }
-    plot.frame();
     plot
 }
 

@@ -46,7 +46,25 @@ fn first_turn(trace: &Trace) -> Range<usize> {
 /// A signal of the record over its first turn in at most `columns` columns; `of` gives the signal
 /// at a bin.
 pub fn columns(trace: &Trace, columns: usize, of: impl Fn(usize) -> f64) -> Columns {
+    cut(trace, &first_turn(trace), columns, of)
+}
+
+/// As [`columns`], of the part of the turn between two angles in degrees.
+pub fn columns_between(
+    trace: &Trace,
+    degrees: &Range<f64>,
+    columns: usize,
+    of: impl Fn(usize) -> f64,
+) -> Columns {
     let turn = first_turn(trace);
+    let mut inside = turn.filter(|&k| degrees.contains(&angle(trace.theta_e[k])));
+    let first = inside.next().unwrap_or(0);
+    let end = inside.last().map_or(first, |last| last + 1);
+    cut(trace, &(first..end), columns, of)
+}
+
+/// A signal over some bins of the record.
+fn cut(trace: &Trace, turn: &Range<usize>, columns: usize, of: impl Fn(usize) -> f64) -> Columns {
     let bins = trace.theta_e.len();
     let count = columns.clamp(1, turn.len().max(1));
     let mut result = Columns::default();

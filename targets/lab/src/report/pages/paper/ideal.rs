@@ -35,7 +35,15 @@ fn phases(description: &str, title: &str, of: impl Fn(usize) -> Columns) -> crat
         description: format!("{description} of the three phases over an electrical turn"),
         title: title.to_owned(),
         range: -1.2..1.2,
-        signals: phases.map(|(phase, color)| (color, of(phase))).collect(),
+        signals: phases
+            .map(|(phase, color)| {
+                (
+                    format!("phase {}", ["a", "b", "c"][phase]),
+                    color,
+                    of(phase),
+                )
+            })
+            .collect(),
         ideal: Vec::new(),
         demand: None,
     })
@@ -177,7 +185,11 @@ pub fn figures_12_13(data: &Reproduction) -> Vec<Block> {
         description: "Ideal quasi-square current of phase a over an electrical turn".to_owned(),
         title: "ideal current of phase a in A".to_owned(),
         range: -most..most,
-        signals: vec![(PHASES[0], columns(ideal_phase(data.current, 0)))],
+        signals: vec![(
+            "phase a".to_owned(),
+            PHASES[0],
+            columns(ideal_phase(data.current, 0)),
+        )],
         ideal: Vec::new(),
         demand: None,
     });

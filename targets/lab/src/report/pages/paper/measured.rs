@@ -40,6 +40,7 @@ fn panels(data: &Reproduction, speed: usize) -> (Vec<Panel<'_>>, Vec<&Point>) {
             let point = point(data, (method, reading, speed));
             let (name, rpm) = (method.name(), number(point.rpm, 0));
             let panel = Panel {
+                variant: None,
                 color: color(reading),
                 of: format!("{name}, {} reading, at {rpm} rpm", reading.name()),
                 caption: format!("{}, **{}**", lettered(method), reading.name()),
@@ -111,7 +112,10 @@ pub fn figure_4(data: &Reproduction) -> Vec<Block> {
 /// Figures 14 and 15: phase current and its spectrum.
 pub fn currents(data: &Reproduction, speed: usize) -> Vec<Block> {
     let (panels, _) = panels(data, speed);
-    let signal = |panel: &Panel<'_>| vec![(panel.color, phase_current(panel.trace, 0))];
+    let signal = |panel: &Panel<'_>| {
+        let current = phase_current(panel.trace, 0);
+        vec![("phase a".to_owned(), panel.color, current)]
+    };
     let names = ("Current of phase a", "current of phase a in A");
     let ideal = [ideal_phase(data.current, 0)];
     let more = [ripple_key(variant(0)), ideal_key("ideal quasi-square wave")];
@@ -296,6 +300,7 @@ fn of_reading(data: &Reproduction, reading: Reading) -> [Block; 3] {
         rated_rpm: data.motor.rated_speed * 60.0 / TAU,
         curves: running
             .map(|(method, run)| Curve {
+                name: method.name().to_owned(),
                 color: variant(method.index()),
                 index: method.index(),
                 points: run.curve.clone(),

@@ -1,0 +1,211 @@
+// What the browser's tests ask the page for. Each list is of faults: empty if all is well.
+
+const settled = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+
+const about = (node) =>
+  `<${node.tagName.toLowerCase()} ${node.className}> ${node.textContent.trim().slice(0, 40)}`;
+
+const isSeen = (node) => node.checkVisibility() && node.getBoundingClientRect().width > 0;
+
+// Draws plots that nobody has scrolled to yet.
+async function drawAll() {
+  plots.filter(({ u }) => !u).forEach(draw);
+  await settled();
+}
+
+async function unfold(isOpen) {
+  document.querySelectorAll("details").forEach((of) => (of.open = isOpen));
+  await drawAll();
+}
+
+// Number of plots, and of those on whose canvas something is drawn.
+function drawnPlots() {
+  const hasInk = ({ u }) => {
+    const { width, height } = u.ctx.canvas;
+    return u.ctx.getImageData(0, 0, width, height).data.some((value) => value > 0);
+  };
+  return [plots.length, plots.filter(({ u }) => u).filter(hasInk).length];
+}
+
+// Texts and boxes that cover each other or stick out of the window.
+function faults() {
+  const selector =
+    "h1, h2, h3, h4, p, nav a, figcaption, .u-wrap, .u-series, .label, .legend li, summary, th, td, pre, .pane";
+  const boxes = [...document.querySelectorAll(selector)].filter(isSeen);
+  const found = [];
+  if (document.documentElement.scrollWidth > innerWidth) {
+    const isWide = (node) => node.getBoundingClientRect().right > innerWidth + 1;
+    const isClipped = (node) => node.parentElement?.closest(".scroll, .pane, pre, .sheet, div.plot");
+    const wide = [...document.querySelectorAll("body *")].filter((of) => isWide(of) && !isClipped(of));
+    const names = wide.slice(0, 3).map(about).join(", ");
+    found.push(`the page is ${document.documentElement.scrollWidth} wide: ${names}`);
+  }
+  const rects = new Map();
+  for (const node of boxes) {
+    const rect = node.getBoundingClientRect();
+    const scrolls = node.closest(".scroll, .pane, pre, .sheet");
+    const shown = scrolls && scrolls !== node ? scrolls.getBoundingClientRect() : rect;
+    if (!scrolls && (rect.right > innerWidth + 1 || rect.left < -1)) found.push(`sticks out: ${about(node)}`);
+    // What a box scrolls away covers nothing.
+    const right = Math.min(rect.right, shown.right);
+    const bottom = Math.min(rect.bottom, shown.bottom);
+    rects.set(node, { left: rect.left, top: rect.top, right, bottom, scrolls });
+  }
+  const sorted = boxes.sort((a, b) => rects.get(a).top - rects.get(b).top);
+  sorted.forEach((one, place) => {
+    const a = rects.get(one);
+    for (const other of sorted.slice(place + 1)) {
+      const b = rects.get(other);
+      if (b.top >= a.bottom - 1) break;
+      const across = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+      const along = Math.min(a.bottom, b.bottom) - b.top;
+      if (across <= 1 || along <= 1 || one.contains(other) || other.contains(one)) continue;
+      found.push(`${about(one)} and ${about(other)}`);
+    }
+  });
+  return found.slice(0, 10);
+}
+
+// Colours -----------------------------------------------------------------------------------------
+
+function luminance(color) {
+  const [red, green, blue] = color.match(/[\d.]+/g).map((value) => {
+    const share = value / 255;
+    return share <= 0.03928 ? share / 12.92 : ((share + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+function groundOf(node) {
+  for (let at = node; at; at = at.parentElement) {
+    const ground = getComputedStyle(at).backgroundColor;
+    if (!/, 0\)$|transparent/.test(ground)) return ground;
+  }
+  return "rgb(255, 255, 255)";
+}
+
+// Texts with less contrast than WCAG's 4.5 (3 for what is muted on purpose).
+function faintTexts() {
+  const nodes = [...document.querySelectorAll("h1, h2, h3, p, td, th, a, summary, figcaption, i, .label")];
+  const faint = nodes.filter(isSeen).filter((node) => {
+    const lights = [luminance(getComputedStyle(node).color), luminance(groundOf(node))].sort((a, b) => a - b);
+    return (lights[1] + 0.05) / (lights[0] + 0.05) < 4;
+  });
+  return faint.map(about).slice(0, 10);
+}
+
+const isDark = () =>
+  luminance(groundOf(document.body)) < 0.05 && plots[0].u.axes[0].stroke() !== "#1f2328";
+
+// Plots -------------------------------------------------------------------------------------------
+
+function pointOf(plot, x, y) {
+  const { over } = plots[plot].u;
+  over.scrollIntoView({ block: "center", behavior: "instant" });
+  const rect = over.getBoundingClientRect();
+  return [rect.left + x * rect.width, rect.top + y * rect.height];
+}
+
+// What a plot says of the values below the mouse.
+const told = (plot) => plots[plot].u.root.querySelector(".u-legend, .readout").innerText;
+
+const scaleOf = (plot) => ["min", "max"].map((end) => Math.round(plots[plot].u.scales.x[end]));
+
+// Names in legends that switch nothing.
+function deadNames() {
+  const dead = [];
+  for (const { u, plot } of plots) {
+    plot.series.forEach((of, k) => {
+      const name = u.root.querySelectorAll(".u-series")[k + 1]?.querySelector("th");
+      const before = u.series[k + 1].show;
+      name?.click();
+      const after = u.series[k + 1].show;
+      name?.click();
+      if (before === after || u.series[k + 1].show !== before) dead.push(of.name);
+    });
+  }
+  return dead;
+}
+
+// Other controls ----------------------------------------------------------------------------------
+
+// What of the page a switch can change.
+const shown = () =>
+  JSON.stringify([
+    [...document.querySelectorAll("figure")].map((of) => of.hidden),
+    plots.map(({ u }) => u.series.map((of) => of.show)),
+  ]);
+
+function deadSwitches() {
+  const buttons = [...document.querySelectorAll("button[data-variant]")];
+  if (buttons.length === 0) return ["no switches"];
+  return buttons
+    .filter((button) => {
+      const before = shown();
+      button.click();
+      const after = shown();
+      const isOff = button.getAttribute("aria-pressed") === "false";
+      button.click();
+      return before === after || !isOff || shown() !== before;
+    })
+    .map(about);
+}
+
+// Headings whose click leaves their column unsorted, upwards or downwards.
+function deadHeadings() {
+  const buttons = [...document.querySelectorAll("button.sort")];
+  if (buttons.length === 0) return ["no headings"];
+  return buttons
+    .filter((button) => {
+      const heading = button.closest("th");
+      const { tBodies } = heading.closest("table");
+      const rows = () => (tBodies.length > 1 ? [...tBodies].map((of) => of.rows[0]) : [...tBodies[0].rows]);
+      const keys = () => rows().map((row) => keyOf(row, columnOf(heading)));
+      const ascends = (all) => all.every((key, k) => k === 0 || compared(all[k - 1], key) <= 0);
+      button.click();
+      const isUp = ascends(keys());
+      button.click();
+      return !isUp || !ascends(keys().reverse());
+    })
+    .map(about);
+}
+
+// Fields, formulas and lines of formulas that mark nothing in another pane.
+function deadLinks() {
+  const box = document.querySelector(".linked");
+  if (!box) return ["no links"];
+  const dead = [];
+  for (const control of box.querySelectorAll("button")) {
+    if (control.dataset.formulas === "") continue;
+    control.click();
+    const panes = [...box.querySelectorAll(".pane")];
+    const marked = panes.filter((pane) => pane.querySelector(".linked-to"));
+    if (marked.length < 2 || !control.classList.contains("linked-to")) dead.push(about(control));
+  }
+  return dead;
+}
+
+// Texts that are marked after a click on the element with a text.
+function linkedTo(selector, text) {
+  const box = document.querySelector(".linked");
+  [...box.querySelectorAll(selector)].find((node) => node.textContent.includes(text)).click();
+  return [...box.querySelectorAll(".linked-to")].map((node) => node.textContent.trim().slice(0, 60));
+}
+
+function deadDetails() {
+  return [...document.querySelectorAll("details")]
+    .filter((details) => {
+      const content = details.querySelector(":scope > :not(summary)");
+      const before = details.open;
+      details.querySelector("summary").click();
+      const isDead = details.open === before || content.checkVisibility() !== details.open;
+      details.open = before;
+      return isDead;
+    })
+    .map(about);
+}
+
+const deadAnchors = () =>
+  [...document.querySelectorAll("a[href^='#']")]
+    .filter((link) => !document.getElementById(link.hash.slice(1)))
+    .map(about);

@@ -1,0 +1,267 @@
+//! What of the emitted code follows from each field of the specification.
+//!
+//! Nobody states it: each field is changed a little, the code is emitted again, and what differs
+//! follows from the field. So it holds for this motor and cannot go stale.
+
+use crate::engine::SelectedMotor;
+use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
+use hexagen_codegen::pipeline::generate;
+use hexagen_codegen::spec::ast::{Number, Value};
+use hexagen_codegen::spec::{KINDS, SpecAst, apply_variant, check};
+use std::ops::Range;
+
+/// A piece of emitted code with a name: a constant, a table, a type or a function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    /// Its name.
+    pub name: String,
+    /// Its documentation, one paragraph.
+    pub text: String,
+    /// Its lines, without those of its documentation.
+    pub lines: Range<usize>,
+}
+
+/// A field of the specification with what follows from it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldLinks {
+    /// `motor`, `inverter` or `controller`.
+    pub section: &'static str,
+    /// Its name.
+    pub name: String,
+    /// Its value as written, or as the default would be written.
+    pub value: String,
+    /// Whether the value is the default.
+    pub is_default: bool,
+    /// Names of the items of the emitted code that differ once the field does.
+    pub items: Vec<String>,
+}
+
+/// The documented items of emitted Rust, in order.
+pub fn items(rust: &str) -> Vec<Item> {
+    let lines: Vec<&str> = rust.lines().collect();
+    let mut found = Vec::new();
+    let mut doc: Vec<&str> = Vec::new();
+    for (place, line) in lines.iter().map(|line| line.trim()).enumerate() {
+        if let Some(text) = line.strip_prefix("///") {
+            doc.push(text.trim());
+        } else if line.starts_with("#[") {
+            // Attributes stand between documentation and item.
+        } else {
+            if let Some(name) = item_name(line).filter(|_| !doc.is_empty()) {
+                let end = place + length(&lines[place..]);
+                found.push(Item {
+                    name: name.to_owned(),
+                    text: doc.join(" "),
+                    lines: place..end,
+                });
+            }
+            doc.clear();
+        }
+    }
+    found
+}
+
+/// The name of the item that begins in a line.
+fn item_name(line: &str) -> Option<&str> {
+    let line = line.strip_prefix("pub ").unwrap_or(line);
+    let kinds = ["const ", "static ", "struct ", "fn "];
+    let rest = kinds.iter().find_map(|kind| line.strip_prefix(kind))?;
+    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
+    Some(&rest[..end.unwrap_or(rest.len())])
+}
+
+/// Number of lines of the item that begins here: up to where its brackets are closed.
+fn length(lines: &[&str]) -> usize {
+    let mut depth = 0_i32;
+    for (place, line) in lines.iter().enumerate() {
+        for letter in line.chars() {
+            match letter {
+                '(' | '[' | '{' => depth += 1,
+                ')' | ']' | '}' => depth -= 1,
+                _ => {}
+            }
+        }
+        if depth == 0 && line.ends_with([';', '}']) {
+            return place + 1;
+        }
+    }
+    lines.len()
+}
+
+/// All fields of a motor file with what follows from each in its controller's code, and the options
+/// of its controller that have a default.
+pub fn links(motor: &SelectedMotor, rust: &str) -> Vec<FieldLinks> {
+    let ast = &motor.ast;
+    let mut fields = Vec::new();
+    for (section, of) in sections(ast) {
+        for field in of.fields.iter().filter(|field| field.name != "description") {
+            let changed = changes(section, &field.name, &field.value, ast);
+            fields.push((
+                section,
+                field.name.clone(),
+                text(&field.value),
+                false,
+                changed,
+            ));
+        }
+    }
+    fields.extend(defaults(ast));
+    let linked = fields.into_iter();
+    let linked = linked.map(|(section, name, value, is_default, changed)| FieldLinks {
+        section,
+        name,
+        value,
+        is_default,
+        items: changed
+            .iter()
+            .find_map(|ast| differing(ast, rust))
+            .unwrap_or_default(),
+    });
+    linked.collect()
+}
+
+/// A field: section, name, value, whether that is the default, and specifications that differ in
+/// it.
+type Changed = (&'static str, String, String, bool, Vec<SpecAst>);
+
+/// The options of the controller that the file leaves to their defaults.
+fn defaults(ast: &SpecAst) -> Vec<Changed> {
+    let Some(Value::Word(kind)) = value_of(ast, "kind") else {
+        return Vec::new();
+    };
+    let Some(of) = KINDS.iter().find(|of| of.name == kind) else {
+        return Vec::new();
+    };
+    let rules = of.rules().into_iter();
+    let rules = rules.filter(|rule| value_of(ast, rule.name).is_none());
+    let with_default = rules.filter_map(|rule| {
+        let preset = rule.preset_value()?;
+        let words = rule.words().iter().map(|word| word.word);
+        let others = words.filter(|word| *word != preset);
+        let changed = others.filter_map(|word| with_option(ast, kind, rule.name, word));
+        Some((
+            "controller",
+            rule.name.to_owned(),
+            preset.to_owned(),
+            true,
+            changed.collect(),
+        ))
+    });
+    with_default.collect()
+}
+
+fn value_of<'a>(ast: &'a SpecAst, name: &str) -> Option<&'a Value> {
+    ast.controller.field(name).map(|field| &field.value)
+}
+
+fn with_option(ast: &SpecAst, kind: &str, name: &str, value: &str) -> Option<SpecAst> {
+    let mut changed = ast.clone();
+    let done = apply_variant(&mut changed, &format!("{kind}:{name}={value}"));
+    done.is_ok().then_some(changed)
+}
+
+fn sections(ast: &SpecAst) -> [(&'static str, &hexagen_codegen::spec::ast::Section); 3] {
+    [
+        ("motor", &ast.motor),
+        ("inverter", &ast.inverter),
+        ("controller", &ast.controller),
+    ]
+}
+
+/// Specifications in which a written field has another value; the nearest first.
+fn changes(section: &str, name: &str, value: &Value, ast: &SpecAst) -> Vec<SpecAst> {
+    let others: Vec<Value> = match value {
+        Value::Number(number) => [1.01, 0.99]
+            .into_iter()
+            .map(|by| scaled(number, by))
+            .collect(),
+        Value::Word(_) => {
+            let rules = KINDS.iter().flat_map(|kind| kind.rules());
+            let words = rules
+                .filter(|rule| rule.name == name)
+                .flat_map(|rule| rule.words());
+            let words = words.map(|word| Value::Word(word.word.to_owned()));
+            words
+                .filter(|word| word_of(word) != word_of(value))
+                .collect()
+        }
+        _ => Vec::new(),
+    };
+    let changed = others.into_iter().map(|value| {
+        let mut changed = ast.clone();
+        let of = match section {
+            "motor" => &mut changed.motor,
+            "inverter" => &mut changed.inverter,
+            _ => &mut changed.controller,
+        };
+        for field in of.fields.iter_mut().filter(|field| field.name == name) {
+            field.value = value.clone();
+        }
+        changed
+    });
+    changed.collect()
+}
+
+fn word_of(value: &Value) -> Option<&str> {
+    match value {
+        Value::Word(word) => Some(word),
+        _ => None,
+    }
+}
+
+/// A number a little off; a whole number is the next one.
+fn scaled(number: &Number, by: f64) -> Value {
+    let is_whole = number.unit.is_none() && number.value.fract() == 0.0;
+    let value = if is_whole {
+        number.value + (by - 1.0).signum()
+    } else {
+        number.value * by
+    };
+    Value::Number(Number {
+        digits: value.to_string(),
+        value,
+        ..number.clone()
+    })
+}
+
+/// A value as written in a file.
+fn text(value: &Value) -> String {
+    match value {
+        Value::Number(number) => number.to_string(),
+        Value::Word(text) | Value::Text(text) => text.clone(),
+        Value::Integers(all) => format!("{all:?}"),
+        Value::List(all) => all.iter().map(text).collect::<Vec<_>>().join(", "),
+        Value::Malformed(_) => String::new(),
+    }
+}
+
+/// Names of the items that differ in the code of a changed specification; `None` if it cannot be
+/// generated.
+fn differing(changed: &SpecAst, rust: &str) -> Option<Vec<String>> {
+    let (spec, origins) = check(changed).ok()?;
+    let generated = generate(&spec, &origins).ok()?;
+    let interface = &generated.interface;
+    let surface = Surface::public(&interface.type_name);
+    let other = readable_rust(&emit_rust(&generated.graph, interface, &surface));
+    let others = bodies(&other);
+    let differs = |(name, body): &(String, String)| {
+        let same = others.iter().find(|(other, _)| other == name);
+        same.is_none_or(|(_, other)| other != body)
+    };
+    let bodies = bodies(rust).into_iter().filter(differs);
+    Some(bodies.map(|(name, _)| name).collect())
+}
+
+/// The items with their code alone: documentation inside of types repeats numbers.
+fn bodies(rust: &str) -> Vec<(String, String)> {
+    let lines: Vec<&str> = rust.lines().collect();
+    let body = |item: &Item| {
+        let lines = lines[item.lines.clone()].iter();
+        let code = lines.filter(|line| !line.trim_start().starts_with("///"));
+        code.copied().collect::<Vec<_>>().join("\n")
+    };
+    items(rust)
+        .iter()
+        .map(|item| (item.name.clone(), body(item)))
+        .collect()
+}
