@@ -130,3 +130,34 @@ fn limits_hold_for_every_motor() {
         }
     });
 }
+
+/// Periods after a step from no current to the rated one in which the mean of 8 periods is more than 5 % above
+/// the limit.
+fn exceeding(bench: &mut Bench, limit: f64) -> usize {
+    bench
+        .closed
+        .controller()
+        .set_current(bench.drive.spec.motor.rated_current);
+    let means = (0..60).map(|_| bench.bus_current(8));
+    let beyond = means.collect::<Vec<_>>();
+    let last = beyond.iter().rposition(|mean| *mean > 1.05 * limit);
+    8 * last.map_or(0, |last| last + 1)
+}
+
+/// What the guide and the semantics page say of a step at full speed.
+#[test]
+fn a_step_exceeds_a_limit_for_some_hundred_periods() {
+    for motor in [
+        "trivedi-keshri-660w",
+        "hoverboard-hub",
+        "teknic-m2310p",
+        "hurst-long",
+    ] {
+        let free = drive(motor, "pdcc", "");
+        let rated = free.spec.motor.rated_current;
+        let limit = 0.5 * Bench::at(&free, 1.0).settled(rated);
+        let limited = drive(motor, "pdcc", &limits([limit, 1.0]));
+        let periods = exceeding(&mut Bench::at(&limited, 1.0), limit);
+        assert!((50..=150).contains(&periods), "{motor}: {periods} periods");
+    }
+}
