@@ -125,7 +125,9 @@ impl Open {
         let found = self.tab.evaluate(&text, true);
         let found = found.unwrap_or_else(|error| panic!("{expression}: {error}"));
         let text = found.value.unwrap_or_default();
-        let text = text.as_str().unwrap_or_else(|| panic!("{expression}: no value"));
+        let text = text
+            .as_str()
+            .unwrap_or_else(|| panic!("{expression}: no value"));
         serde_json::from_str(text).expect("JSON")
     }
 
