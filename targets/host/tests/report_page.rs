@@ -52,6 +52,18 @@ fn page_is_complete_in_itself_and_well_formed() {
     page_support::assert_plots_stay_inside_their_frames(&PAGE);
 }
 
+/// Three of the seven plotted variants of a library motor are on this page, whose own share of a
+/// megabyte is in proportion.
+#[test]
+fn the_page_stays_small() {
+    let most = 520_000;
+    let size = PAGE.len();
+    assert!(
+        size < most,
+        "{size} bytes of at most {most}: a motor's page would pass 1 MB; draw fewer columns or points"
+    );
+}
+
 #[test]
 fn same_data_give_the_same_bytes() {
     assert_eq!(render(&DATA), *PAGE);

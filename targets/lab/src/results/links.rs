@@ -7,7 +7,7 @@ use crate::engine::SelectedMotor;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::ast::{Number, Value};
-use hexagen_codegen::spec::{KINDS, SpecAst, apply_variant, check};
+use hexagen_codegen::spec::{KINDS, Kind, Rule, SpecAst, apply_variant, check};
 use std::ops::Range;
 
 /// A piece of emitted code with a name: a constant, a table, a type or a function.
@@ -176,10 +176,8 @@ fn changes(section: &str, name: &str, value: &Value, ast: &SpecAst) -> Vec<SpecA
             .map(|by| scaled(number, by))
             .collect(),
         Value::Word(_) => {
-            let rules = KINDS.iter().flat_map(|kind| kind.rules());
-            let words = rules
-                .filter(|rule| rule.name == name)
-                .flat_map(|rule| rule.words());
+            let rules = KINDS.iter().flat_map(Kind::rules);
+            let words = rules.filter(|rule| rule.name == name).flat_map(Rule::words);
             let words = words.map(|word| Value::Word(word.word.to_owned()));
             words
                 .filter(|word| word_of(word) != word_of(value))

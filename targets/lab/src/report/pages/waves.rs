@@ -7,8 +7,8 @@ use crate::report::{Block, Color, DEMAND, Figure, IDEAL, Key, PHASES, Plot, Sign
 use crate::results::Results;
 use crate::text::{TorqueScale, number};
 
-/// Columns of a plot over one turn.
-const COLUMNS: usize = 480;
+/// Columns of a plot over one turn: one for each pixel or two; half of the page's bytes are theirs.
+const COLUMNS: usize = 400;
 
 /// A plotted record.
 pub struct Panel<'a> {

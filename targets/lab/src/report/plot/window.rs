@@ -59,7 +59,7 @@ pub fn columns_between(
     let turn = first_turn(trace);
     let mut inside = turn.filter(|&k| degrees.contains(&angle(trace.theta_e[k])));
     let first = inside.next().unwrap_or(0);
-    let end = inside.last().map_or(first, |last| last + 1);
+    let end = inside.next_back().map_or(first, |last| last + 1);
     cut(trace, &(first..end), columns, of)
 }
 
