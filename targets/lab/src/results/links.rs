@@ -10,7 +10,7 @@ use hexagen_codegen::spec::ast::{Number, Value};
 use hexagen_codegen::spec::{KINDS, Kind, Rule, SpecAst, apply_variant, check};
 use std::ops::Range;
 
-/// A piece of emitted code with a name: a constant, a table, a type or a function.
+/// A piece of emitted code with a name: a constant, a table or a function. Types have no formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     /// Its name.
@@ -64,7 +64,7 @@ pub fn items(rust: &str) -> Vec<Item> {
 /// The name of the item that begins in a line.
 fn item_name(line: &str) -> Option<&str> {
     let line = line.strip_prefix("pub ").unwrap_or(line);
-    let kinds = ["const ", "static ", "struct ", "fn "];
+    let kinds = ["const ", "static ", "fn "];
     let rest = kinds.iter().find_map(|kind| line.strip_prefix(kind))?;
     let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
     Some(&rest[..end.unwrap_or(rest.len())])
