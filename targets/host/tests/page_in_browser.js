@@ -176,7 +176,6 @@ function deadLinks() {
   if (!box) return ["no links"];
   const dead = [];
   for (const control of box.querySelectorAll("button")) {
-    if (control.dataset.formulas === "") continue;
     control.click();
     const panes = [...box.querySelectorAll(".pane")];
     const marked = panes.filter((pane) => pane.querySelector(".linked-to"));

@@ -17,7 +17,11 @@ pub fn linked(of: &Linked) -> Result<Markup, RenderError> {
                 h3 { "Specification" }
                 ul.pane {
                     @for (text, formulas) in &of.fields {
-                        li { button data-formulas=(joined(formulas)) { code { (text) } } }
+                        li {
+                            // Not everything leaves a trace in the code.
+                            @if formulas.is_empty() { code { (text) } }
+                            @else { button data-formulas=(joined(formulas)) { code { (text) } } }
+                        }
                     }
                 }
             }

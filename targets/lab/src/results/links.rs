@@ -10,7 +10,7 @@ use hexagen_codegen::spec::ast::{Number, Value};
 use hexagen_codegen::spec::{KINDS, Kind, Rule, SpecAst, apply_variant, check};
 use std::ops::Range;
 
-/// A piece of emitted code with a name: a constant, a table, a type or a function.
+/// A piece of emitted code with a name: a constant, a table or a function. Types have no formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     /// Its name.
@@ -32,8 +32,8 @@ pub struct FieldLinks {
     pub value: String,
     /// Whether the value is the default.
     pub is_default: bool,
-    /// Names of the items of the emitted code that differ once the field does.
-    pub items: Vec<String>,
+    /// Places of the items of the emitted code that differ once the field does.
+    pub items: Vec<usize>,
 }
 
 /// The documented items of emitted Rust, in order.
@@ -64,7 +64,7 @@ pub fn items(rust: &str) -> Vec<Item> {
 /// The name of the item that begins in a line.
 fn item_name(line: &str) -> Option<&str> {
     let line = line.strip_prefix("pub ").unwrap_or(line);
-    let kinds = ["const ", "static ", "struct ", "fn "];
+    let kinds = ["const ", "static ", "fn "];
     let rest = kinds.iter().find_map(|kind| line.strip_prefix(kind))?;
     let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_');
     Some(&rest[..end.unwrap_or(rest.len())])
@@ -233,21 +233,19 @@ fn text(value: &Value) -> String {
     }
 }
 
-/// Names of the items that differ in the code of a changed specification; `None` if it cannot be
-/// generated.
-fn differing(changed: &SpecAst, rust: &str) -> Option<Vec<String>> {
+/// The items that differ in the code of a changed specification, by their places; `None` if it
+/// cannot be generated.
+fn differing(changed: &SpecAst, rust: &str) -> Option<Vec<usize>> {
     let (spec, origins) = check(changed).ok()?;
     let generated = generate(&spec, &origins).ok()?;
     let interface = &generated.interface;
     let surface = Surface::public(&interface.type_name);
     let other = readable_rust(&emit_rust(&generated.graph, interface, &surface));
+    // A name may be there twice: `V_BUS` in volts for users, and in words.
     let others = bodies(&other);
-    let differs = |(name, body): &(String, String)| {
-        let same = others.iter().find(|(other, _)| other == name);
-        same.is_none_or(|(_, other)| other != body)
-    };
-    let bodies = bodies(rust).into_iter().filter(differs);
-    Some(bodies.map(|(name, _)| name).collect())
+    let bodies = bodies(rust).into_iter().enumerate();
+    let differing = bodies.filter(|(_, body)| !others.contains(body));
+    Some(differing.map(|(place, _)| place).collect())
 }
 
 /// The items with their code alone: documentation inside of types repeats numbers.

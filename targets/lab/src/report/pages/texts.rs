@@ -14,16 +14,15 @@ pub fn linked(data: &Results) -> Vec<Block> {
         return Block::nothing("emitted code");
     };
     let note = "A click on a field, a formula or a line of code marks what belongs to it in the other two. A formula belongs to a field if \
-                its code differs once the field does: by 1 % for a number, by 1 for a count, by another choice for a word.";
+                its code differs once the field does: by 1 % for a number, by 1 for a count, by another choice for a word of the controller. Pale fields have none.";
     let items = items(&texts.rust);
-    let place = |name: &String| items.iter().position(|item| item.name == *name);
     let fields = data.links.iter().map(|field| {
         let default = if field.is_default { " (default)" } else { "" };
         let text = format!(
             "{}.{} = {}{default}",
             field.section, field.name, field.value
         );
-        (text, field.items.iter().filter_map(place).collect())
+        (text, field.items.clone())
     });
     let formulas = items.iter().map(|item| {
         // Ranges stand in the data sheet.
