@@ -72,6 +72,12 @@ pub struct Checked {
     pub bus_limit_rpm: f64,
     /// ADC counts of the rated current.
     pub rated_counts: f64,
+    /// Greatest current drawn from the bus, ampere, where it is limited.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bus_current_limit_a: Option<f64>,
+    /// Greatest current returned to it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub return_current_limit_a: Option<f64>,
     /// Runs, slow and at rated speed.
     pub points: Vec<Point>,
     /// Warnings of the generator.
@@ -126,6 +132,8 @@ impl Checked {
             rating_v: line_to_line * motor.rated_speed + drop,
             bus_limit_rpm: bus_limit * 30.0 / std::f64::consts::PI,
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
+            bus_current_limit_a: inverter.bus_currents.drawn,
+            return_current_limit_a: inverter.bus_currents.returned,
             points,
             warnings: drive.warnings.clone(),
         };
@@ -154,7 +162,12 @@ impl Checked {
         let mut buts = Vec::new();
         if lost(rated) {
             buts.push(format!(
-                "at rated speed the bus leaves {} % of the torque",
+                "at rated speed {} {} % of the torque",
+                if self.bus_current_limit_a.is_some() {
+                    "the bus and its current limit leave"
+                } else {
+                    "the bus leaves"
+                },
                 significant(rated.torque_pct.unwrap_or(0.0), 3)
             ));
         }
@@ -225,6 +238,7 @@ impl Checked {
                 self.bus_limit_rpm,
             ),
         ];
+        lines.extend(self.limits_of_bus());
         lines.extend(self.points.iter().map(|point| self.line(point)));
         lines.push(format!(
             "stable      with R and L as far off as their tolerances, {:.0} % and {:.0} %",
@@ -233,6 +247,20 @@ impl Checked {
         ));
         lines.push(format!("next        {next}"));
         lines.iter().map(|line| shortened(line)).collect()
+    }
+
+    /// The limits of the bus current, where there are any.
+    fn limits_of_bus(&self) -> Option<String> {
+        let limits = [
+            (self.bus_current_limit_a, "drawn from the bus"),
+            (self.return_current_limit_a, "returned to it"),
+        ];
+        let limits = limits.into_iter().filter_map(|(most, way)| {
+            let most = engineering(most?, "A");
+            Some(format!("{most} {way}"))
+        });
+        let limits: Vec<String> = limits.collect();
+        (!limits.is_empty()).then(|| format!("limits      at most {}", limits.join(", ")))
     }
 
     fn line(&self, point: &Point) -> String {

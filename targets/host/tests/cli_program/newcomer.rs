@@ -1,6 +1,7 @@
 //! From a data sheet to a checked drive: `new`, `check`, `explain`, `completions`.
 
 use crate::support::{PAPER, Said, hexagen, number, run};
+use hexagen_lab::engine::MotorSource;
 use std::fs;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
@@ -122,6 +123,24 @@ fn a_motor_is_checked_on_a_board() {
     let next = "hexagen simulate teknic-m2310p --board st-b-g431b-esc1";
     assert!(said.stdout.contains(next), "{said:?}");
     run(["check", "teknic-m2310p", "--board", "esc1"]).assert_bad_input(&["esc1"]);
+}
+
+#[test]
+fn check_tells_the_limits_of_the_bus_current() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("limited.toml");
+    let motor = MotorSource::of_library("hoverboard-hub").expect("is in the library");
+    let limits = "[inverter]\nbus_current_limit = \"5 A\"\nreturn_current_limit = \"1 A\"\n";
+    let text = motor.text.replace("[inverter]\n", limits);
+    fs::write(&file, text).expect("is written");
+    let said = run(["check", file.to_str().expect("a path")]);
+    assert_short(&said);
+    for text in [
+        "the bus and its current limit leave 65.",
+        "limits      at most 5 A drawn from the bus, 1 A returned to it",
+    ] {
+        assert!(said.stdout.contains(text), "{text}: {}", said.stdout);
+    }
 }
 
 #[test]
