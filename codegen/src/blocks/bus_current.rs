@@ -52,10 +52,7 @@ impl<'b> BusCurrentLimit<'b> {
         let doc =
             "By how much the bus current limits the set-point below the largest, words of voltage.";
         let range = Interval::new(0, set_point.top);
-        let extra = BITS.saturating_sub(range.bits()).min(12);
-        let frac_bits = (l.scale.voltage_bits + extra) as i32;
-        let meaning = "set-point withheld, base one timer count of voltage";
-        l.format("j_withheld", 32, frac_bits, Rounding::RoundHalfUp, meaning);
+        let extra = l.extra_bits("j_withheld", range, BITS, "set-point withheld");
         let range = Interval::new(0, set_point.top << extra);
         let withheld = l.b.memory("j_withheld", 0, range, doc);
         let range = Interval::symmetric(i64::from(l.spec.inverter.timer_period));

@@ -138,6 +138,16 @@ impl<'b> Lowering<'b> {
         self.notes.into_inner()
     }
 
+    /// Fraction bits, at most 12 beyond those of voltages, with which a state word whose voltages have this
+    /// range takes up to `bits` bits. Notes its format.
+    fn extra_bits(&self, name: &str, range: Interval, bits: u32, meaning: &str) -> u32 {
+        let extra = bits.saturating_sub(range.bits()).min(12);
+        let frac_bits = (self.scale.voltage_bits + extra) as i32;
+        let meaning = format!("{meaning}, base one timer count of voltage");
+        self.format(name, 32, frac_bits, Rounding::RoundHalfUp, &meaning);
+        extra
+    }
+
     /// Notes a format, once.
     pub fn format(
         &self,

@@ -3,7 +3,6 @@
 use super::Lowering;
 use super::set_point::SetPointWords;
 use crate::diagnostics::engineering;
-use crate::interface::Rounding;
 use crate::ir::{Exact, Expr, Interval, Memory, Named, Real, named};
 
 /// Bits of the set-point in force: with a rate of the rated current in a minute a period's step still
@@ -28,10 +27,7 @@ impl<'b> SlewLimit<'b> {
     /// Declares the word; `rate` in A/s.
     pub fn new(l: &Lowering<'b>, rate: f64, set_point: &SetPointWords<'b>) -> Self {
         let range = set_point.j.interval();
-        let extra = BITS.saturating_sub(range.bits()).min(12);
-        let frac_bits = (l.scale.voltage_bits + extra) as i32;
-        let meaning = "set-point in force, base one timer count of voltage";
-        l.format("j_in_force", 32, frac_bits, Rounding::RoundHalfUp, meaning);
+        let extra = l.extra_bits("j_in_force", range, BITS, "set-point in force");
         let doc = "Set-point in force, words of voltage with additional fraction bits.";
         let range = Interval::symmetric(range.high << extra);
         Self {

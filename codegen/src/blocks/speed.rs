@@ -4,7 +4,6 @@ use super::rotor::speed_word;
 use super::set_point::{SetPointWords, SpeedWords};
 use super::{Allowed, Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
-use crate::interface::Rounding;
 use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Named, Real, named};
 use crate::spec::{Spec, SpeedLoop};
 use std::f64::consts::TAU;
@@ -48,12 +47,9 @@ impl<'b> SpeedRegulator<'b> {
         set_point: &SetPointWords<'b>,
     ) -> Self {
         let top = set_point.top;
-        let bits = Interval::symmetric(top).bits();
-        let extra = INTEGRAL_BITS.saturating_sub(bits).min(12);
-        let frac_bits = (l.scale.voltage_bits + extra) as i32;
-        let meaning = "integral of the speed regulator, base one timer count of voltage";
-        let rounding = Rounding::RoundHalfUp;
-        l.format("speed_integral", 32, frac_bits, rounding, meaning);
+        let range = Interval::symmetric(top);
+        let meaning = "integral of the speed regulator";
+        let extra = l.extra_bits("speed_integral", range, INTEGRAL_BITS, meaning);
         let range = Interval::symmetric(top << extra);
         let doc =
             "Integral of the speed regulator, words of voltage with additional fraction bits.";

@@ -1,12 +1,13 @@
 //! A measured bus voltage takes torque back before it trips: what brakes at a high bus, what drives at
 //! a low one, in either direction; beyond the limits the drive trips.
 
+mod bench;
+
+use bench::Bench;
 use hexagen::Fault;
-use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop};
-use hexagen_lab::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
-use hexagen_lab::plant::Plant;
+use hexagen_lab::closed_loop::CurrentLoop;
+use hexagen_lab::engine::{MotorSource, Prepared, prepare};
 use rayon::prelude::*;
-use std::f64::consts::FRAC_PI_3;
 
 /// Trips at 70 % and 130 % of 48 V; braking torque is whole up to 54.4 V and 0 from 60.4 V on, motoring
 /// torque whole from 41.6 V on and 0 up to 35.6 V.
@@ -37,32 +38,7 @@ fn drive(law: &str) -> Prepared {
     prepare(&motor, Some(law)).unwrap_or_else(|why| panic!("{law}: {why}"))
 }
 
-struct Bench<'d> {
-    drive: &'d Prepared,
-    closed: ClosedLoop<Engine<'d>>,
-    /// Periods of a sector.
-    sector: usize,
-}
-
-impl<'d> Bench<'d> {
-    /// A shaft held at this share of the rated speed, at set-point 0.
-    fn at(drive: &'d Prepared, share: f64) -> Self {
-        let spec = &drive.spec;
-        let omega = share * spec.motor.rated_speed;
-        let plant = Plant::new(plant_of(spec), 0.2, omega).expect("a plant");
-        let delay = run_of(spec, omega, 0.0).delay;
-        let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
-        let sector = FRAC_PI_3 / (omega.abs() * f64::from(spec.motor.pole_pairs));
-        let mut bench = Self {
-            drive,
-            closed: ClosedLoop::new(plant, engine, delay),
-            sector: (sector / spec.inverter.t_s).round() as usize,
-        };
-        // The rotor's speed becomes known.
-        bench.closed.run(20 * bench.sector, &mut ());
-        bench
-    }
-
+impl Bench<'_> {
     fn set_bus(&mut self, volts: f64) {
         let plant = self.closed.plant_mut();
         plant.change(|params| params.v_bus = volts).expect("a bus");

@@ -1,12 +1,11 @@
 //! Limits of the bus current hold in the mean, and take nothing where they are not reached.
 
-use hexagen_lab::closed_loop::ClosedLoop;
-use hexagen_lab::engine::{
-    Engine, Model, MotorSource, Prepared, library, plant_of, prepare, run_of,
-};
-use hexagen_lab::plant::{EnergyMeter, Plant};
+mod bench;
+
+use bench::Bench;
+use hexagen_lab::engine::{MotorSource, Prepared, library, prepare};
+use hexagen_lab::plant::EnergyMeter;
 use rayon::prelude::*;
-use std::f64::consts::FRAC_PI_3;
 
 /// Laws with the tolerance of the mean: that of whole vectors is of currents that change much in a period.
 const LAWS: [(&str, f64); 6] = [
@@ -35,32 +34,7 @@ fn left(free: f64, [drawn, returned]: [f64; 2]) -> f64 {
     free.clamp(-returned, drawn)
 }
 
-struct Bench<'d> {
-    drive: &'d Prepared,
-    closed: ClosedLoop<Engine<'d>>,
-    /// Periods of a sector.
-    sector: usize,
-}
-
-impl<'d> Bench<'d> {
-    /// A shaft held at this share of the rated speed, at set-point 0.
-    fn at(drive: &'d Prepared, share: f64) -> Self {
-        let spec = &drive.spec;
-        let omega = share * spec.motor.rated_speed;
-        let plant = Plant::new(plant_of(spec), 0.2, omega).expect("a plant");
-        let delay = run_of(spec, omega, 0.0).delay;
-        let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
-        let sector = FRAC_PI_3 / (omega.abs() * f64::from(spec.motor.pole_pairs));
-        let mut bench = Self {
-            drive,
-            closed: ClosedLoop::new(plant, engine, delay),
-            sector: (sector / spec.inverter.t_s).round() as usize,
-        };
-        // The rotor's speed becomes known.
-        bench.closed.run(20 * bench.sector, &mut ());
-        bench
-    }
-
+impl Bench<'_> {
     /// Mean bus current over so many periods, ampere.
     fn bus_current(&mut self, periods: usize) -> f64 {
         let plant = self.closed.plant();
