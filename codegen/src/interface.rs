@@ -166,13 +166,15 @@ pub struct Limits {
     pub sensors: Sensors,
 }
 
-/// Two current sensors.
+/// The current sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sensors {
-    /// Their phases.
+    /// The phases of the first two.
     pub phases: SensedPhases,
     /// The second one, where it differs from the first.
     pub second: Option<Sensor>,
+    /// The third, if there is one.
+    pub third: Option<ThirdSensor>,
 }
 
 impl Sensors {
@@ -180,6 +182,7 @@ impl Sensors {
     pub const AB: Self = Self {
         phases: SensedPhases::Ab,
         second: None,
+        third: None,
     };
 }
 
@@ -194,7 +197,22 @@ pub enum SensedPhases {
     Ca,
 }
 
-/// Sign and offset of a current sensor.
+/// The third current sensor, and what is made of it; see the runtime's `ThirdSensor`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ThirdSensor {
+    /// Its sign, gain and offset.
+    pub sensor: Sensor,
+    /// Largest compare value of a leg that is read at the end of its period; none for sensors in the phases.
+    pub readable: Option<u16>,
+    /// Whether a command takes effect one period after its sample.
+    pub is_delayed: bool,
+    /// Largest sum of the three currents without a fault, words of current.
+    pub sum_tolerance: i32,
+    /// Samples in a row with a larger one that trip; 0 for none.
+    pub sum_samples: u16,
+}
+
+/// Sign, gain and offset of a current sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sensor {
     /// Whether counts fall with the current into the motor.
@@ -203,6 +221,13 @@ pub struct Sensor {
     pub offset: u16,
     /// Least and greatest offset that calibration accepts, counts.
     pub offsets: [u16; 2],
+    /// Gain over that of the first sensor, with 15 fraction bits.
+    pub ratio: i32,
+}
+
+impl Sensor {
+    /// The ratio of equal gains.
+    pub const ALIKE: i32 = 1 << 15;
 }
 
 /// Units of the observations, in numbers with 16 fraction bits.

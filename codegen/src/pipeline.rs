@@ -13,7 +13,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{CurrentSensing, CurrentSensor, Origins, Spec};
+use crate::spec::{CurrentSensing, Origins, Spec};
 use crate::stopwatch::Part;
 
 /// Input of the emitters.
@@ -98,20 +98,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 /// What a specification can say of sensors and legs, and this version cannot generate.
 fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
     let inverter = &spec.inverter;
-    let first = inverter.sensors()[0];
-    let has_gain = |sensor: &CurrentSensor| sensor.gain.abs() == first.gain.abs();
     let mut errors = Collector::new();
-    if !inverter.other_sensors.iter().all(has_gain) {
-        let gains: Vec<String> = inverter
-            .sensors()
-            .iter()
-            .map(|sensor| engineering(sensor.gain.abs(), "A"))
-            .collect();
-        errors.push(catalogue::unlike_gains(
-            origins.at("inverter.adc_gain"),
-            &gains.join(", "),
-        ));
-    }
     if spec.controller.common_mode().is_none() {
         let held = [
             (

@@ -69,7 +69,9 @@ pub fn choose_scale(
     // i_c = -(i_a + i_b) and differences of two currents need one bit more than a current; with
     // 16-bit words currents themselves must fit the word as factors.
     let spare = if word == 16 { 15 } else { 30 };
-    let Some(current_bits) = u32::checked_sub(spare, inverter.adc_bits) else {
+    let most_bits = u32::checked_sub(spare, inverter.adc_bits);
+    let fits = |bits: &u32| currents_fit(inverter, word, *bits);
+    let Some(current_bits) = most_bits.and_then(|most| (0..=most).rev().find(fits)) else {
         return Err(Unscalable::TooNarrow {
             signal: "phase currents".to_owned(),
             bits: Some(inverter.adc_bits + 1),
@@ -91,6 +93,18 @@ pub fn choose_scale(
             fit(of_voltages(bits), lower(of_voltages(bits)), false)
         }),
         found => found,
+    }
+}
+
+/// Whether currents with so many fraction bits fit: as factors with 16-bit words, else the sum of all that are measured,
+/// or of two.
+fn currents_fit(inverter: &InverterSpec, word: u32, fraction_bits: u32) -> bool {
+    let [low, high] = inverter.current_range(fraction_bits);
+    let most = high.max(-low);
+    if word == 16 {
+        most <= i64::from(i16::MAX)
+    } else {
+        most * inverter.sensors().len() as i64 <= i64::from(i32::MAX)
     }
 }
 

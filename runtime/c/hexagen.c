@@ -110,19 +110,38 @@ static void start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     forget_turn(supervisor);
 }
 
+/** Number of current sensors. */
+static uint16_t sensors(const hexagen_limits *limits)
+{
+    return limits->third.is_there ? 3U : 2U;
+}
+
+static void forget_sums(hexagen_supervisor *supervisor)
+{
+    uint16_t sensor;
+    for (sensor = 0; sensor < 3U; sensor++) {
+        supervisor->sum[sensor] = 0;
+    }
+}
+
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
+    uint16_t sensor;
     supervisor->fault = HEXAGEN_FAULT_NONE;
     supervisor->hall_prev = 0;
     supervisor->hall_gap = 0;
     supervisor->hall_glitches = 0;
     supervisor->stall_count = 0;
-    supervisor->sum_a = 0;
-    supervisor->sum_b = 0;
-    supervisor->offset_a =
-        hexagen_wrap((uint32_t)limits->sensors[0].offset << limits->current_bits);
-    supervisor->offset_b =
-        hexagen_wrap((uint32_t)limits->sensors[1].offset << limits->current_bits);
+    forget_sums(supervisor);
+    for (sensor = 0; sensor < sensors(limits); sensor++) {
+        supervisor->offset[sensor] =
+            hexagen_wrap((uint32_t)limits->sensors[sensor].offset << limits->current_bits);
+    }
+    for (; sensor < 3U; sensor++) {
+        supervisor->offset[sensor] = 0;
+    }
+    supervisor->sum_count = 0;
+    supervisor->unread = 0;
     start(supervisor, limits);
 }
 
@@ -152,13 +171,16 @@ static int32_t mean(const hexagen_limits *limits, int32_t sum)
 
 static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    if (is_bad_offset(limits, 0, supervisor->sum_a)
-        || is_bad_offset(limits, 1, supervisor->sum_b)) {
-        hexagen_trip(supervisor, HEXAGEN_FAULT_OFFSET);
-        return;
+    uint16_t sensor;
+    for (sensor = 0; sensor < sensors(limits); sensor++) {
+        if (is_bad_offset(limits, sensor, supervisor->sum[sensor])) {
+            hexagen_trip(supervisor, HEXAGEN_FAULT_OFFSET);
+            return;
+        }
     }
-    supervisor->offset_a = mean(limits, supervisor->sum_a);
-    supervisor->offset_b = mean(limits, supervisor->sum_b);
+    for (sensor = 0; sensor < sensors(limits); sensor++) {
+        supervisor->offset[sensor] = mean(limits, supervisor->sum[sensor]);
+    }
     supervisor->countdown = limits->precharge_periods;
     supervisor->mode = HEXAGEN_MODE_PRECHARGE;
     if (limits->precharge_periods == 0U) {
@@ -180,14 +202,17 @@ static bool is_last(hexagen_supervisor *supervisor)
  * the start follows.
  */
 static void start_up(
-    hexagen_supervisor *supervisor, const hexagen_limits *limits, int32_t count_a, int32_t count_b)
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, const uint16_t *counts)
 {
     /* The countdown ends the sums before this limit, whatever the initial state. */
     const int32_t most = hexagen_shift_left((int32_t)limits->adc_max, limits->calibration_log2);
+    uint16_t sensor;
     switch (supervisor->mode) {
     case HEXAGEN_MODE_CALIBRATE:
-        supervisor->sum_a = hexagen_min(supervisor->sum_a + count_a, most);
-        supervisor->sum_b = hexagen_min(supervisor->sum_b + count_b, most);
+        for (sensor = 0; sensor < sensors(limits); sensor++) {
+            supervisor->sum[sensor] =
+                hexagen_min(supervisor->sum[sensor] + (int32_t)counts[sensor], most);
+        }
         if (is_last(supervisor)) {
             end_calibration(supervisor, limits);
         }
@@ -213,8 +238,7 @@ static void start_up(
 static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, bool has_hall, int32_t first, int32_t second)
 {
-    if (hexagen_is_at_end(limits, hexagen_count(limits, sample, 0))
-        || hexagen_is_at_end(limits, hexagen_count(limits, sample, 1))) {
+    if (hexagen_has_end(supervisor, limits, sample)) {
         return HEXAGEN_FAULT_ADC_RANGE;
     }
     if (!has_hall) {
@@ -222,6 +246,9 @@ static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexa
     }
     if (hexagen_is_over(limits, first, second)) {
         return HEXAGEN_FAULT_OVER_CURRENT;
+    }
+    if (hexagen_is_sum_off(supervisor, limits)) {
+        return HEXAGEN_FAULT_CURRENT_SUM;
     }
     return hexagen_is_stalled(supervisor, limits) ? HEXAGEN_FAULT_STALL : HEXAGEN_FAULT_NONE;
 }
@@ -307,18 +334,25 @@ static hexagen_rested go_on_braking(
     return rested;
 }
 
-hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+static uint16_t count_within(
+    const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
+{
+    const uint16_t read = hexagen_count(limits, sample, sensor);
+    return (read < limits->adc_max) ? read : limits->adc_max;
+}
+
+static int32_t current_within(const hexagen_limits *limits, int32_t current)
+{
+    return hexagen_clamp(current, limits->current_least, limits->current_most);
+}
+
+static hexagen_rested go_without(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, hexagen_checked *checked)
 {
-    const uint16_t most = limits->adc_max;
-    const uint16_t read_a = hexagen_count(limits, sample, 0);
-    const uint16_t read_b = hexagen_count(limits, sample, 1);
-    const uint16_t count_a = (read_a < most) ? read_a : most;
-    const uint16_t count_b = (read_b < most) ? read_b : most;
-    const int32_t first = hexagen_current(limits, 0, count_a, supervisor->offset_a);
-    const int32_t second = hexagen_current(limits, 1, count_b, supervisor->offset_b);
-    const int32_t third = hexagen_clamp(
-        hexagen_third(first, second), limits->current_least, limits->current_most);
+    const uint16_t counts[3] = { count_within(limits, sample, 0), count_within(limits, sample, 1),
+        count_within(limits, sample, 2) };
+    int32_t first;
+    int32_t second;
     const uint16_t sampled = hexagen_hall_of(limits, sample);
     const bool is_sound = hexagen_is_sound(supervisor, limits, sampled);
     const bool is_bridged = !is_sound && bridge(supervisor, limits);
@@ -327,7 +361,10 @@ hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits
                                         : 0U;
     hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
     hexagen_fault fault;
-    hexagen_take_currents(limits, checked, first, second, third);
+    hexagen_sense(supervisor, limits, counts, &first, &second);
+    hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
+    checked->i_a = current_within(limits, checked->i_a);
+    checked->i_b = current_within(limits, checked->i_b);
     checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
     fault = find_fault(supervisor, limits, sample, is_sound || is_bridged, first, second);
@@ -346,7 +383,18 @@ hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits
     } else if (supervisor->mode == HEXAGEN_MODE_BRAKE) {
         rested = go_on_braking(supervisor, limits);
     }
-    start_up(supervisor, limits, (int32_t)count_a, (int32_t)count_b);
+    start_up(supervisor, limits, counts);
+    return rested;
+}
+
+hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample, hexagen_checked *checked)
+{
+    const hexagen_rested rested = go_without(supervisor, limits, sample, checked);
+    if (!rested.is_controlled) {
+        const hexagen_legs legs = hexagen_all_legs(rested.leg);
+        hexagen_follow_legs(supervisor, limits, &legs);
+    }
     return rested;
 }
 
@@ -394,14 +442,16 @@ bool hexagen_resume(hexagen_supervisor *supervisor)
 
 bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    const int32_t offset_a = supervisor->offset_a;
-    const int32_t offset_b = supervisor->offset_b;
+    const hexagen_supervisor before = *supervisor;
+    uint16_t sensor;
     if (!is_ready(supervisor) && supervisor->mode != HEXAGEN_MODE_TRIPPED) {
         return false;
     }
     hexagen_start(supervisor, limits);
-    supervisor->offset_a = offset_a;
-    supervisor->offset_b = offset_b;
+    for (sensor = 0; sensor < 3U; sensor++) {
+        supervisor->offset[sensor] = before.offset[sensor];
+    }
+    supervisor->unread = before.unread;
     return true;
 }
 
@@ -410,8 +460,7 @@ void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *lim
     if (supervisor->mode != HEXAGEN_MODE_TRIPPED) {
         supervisor->mode = HEXAGEN_MODE_CALIBRATE;
         supervisor->countdown = (uint16_t)(1U << limits->calibration_log2);
-        supervisor->sum_a = 0;
-        supervisor->sum_b = 0;
+        forget_sums(supervisor);
     }
 }
 
@@ -551,10 +600,10 @@ void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words)
     words[0] = (int32_t)supervisor->mode;
     words[1] = (int32_t)supervisor->fault;
     words[2] = (int32_t)supervisor->countdown;
-    words[3] = supervisor->sum_a;
-    words[4] = supervisor->sum_b;
-    words[5] = supervisor->offset_a;
-    words[6] = supervisor->offset_b;
+    words[3] = supervisor->sum[0];
+    words[4] = supervisor->sum[1];
+    words[5] = supervisor->offset[0];
+    words[6] = supervisor->offset[1];
     words[7] = supervisor->stall_count;
     words[8] = (int32_t)supervisor->hall_prev;
     words[9] = (int32_t)supervisor->hall_gap;
@@ -563,6 +612,10 @@ void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words)
     words[12] = supervisor->turn_age;
     words[13] = supervisor->turn_interval;
     words[14] = supervisor->turn_direction;
+    words[15] = supervisor->sum[2];
+    words[16] = supervisor->offset[2];
+    words[17] = (int32_t)supervisor->sum_count;
+    words[18] = (int32_t)supervisor->unread;
 }
 
 void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
@@ -570,10 +623,10 @@ void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
     supervisor->mode = (hexagen_mode)words[0];
     supervisor->fault = (hexagen_fault)words[1];
     supervisor->countdown = (uint16_t)words[2];
-    supervisor->sum_a = words[3];
-    supervisor->sum_b = words[4];
-    supervisor->offset_a = words[5];
-    supervisor->offset_b = words[6];
+    supervisor->sum[0] = words[3];
+    supervisor->sum[1] = words[4];
+    supervisor->offset[0] = words[5];
+    supervisor->offset[1] = words[6];
     supervisor->stall_count = words[7];
     supervisor->hall_prev = (uint16_t)words[8];
     supervisor->hall_gap = (uint16_t)words[9];
@@ -582,5 +635,9 @@ void hexagen_set_words(hexagen_supervisor *supervisor, const int32_t *words)
     supervisor->turn_age = words[12];
     supervisor->turn_interval = words[13];
     supervisor->turn_direction = words[14];
+    supervisor->sum[2] = words[15];
+    supervisor->offset[2] = words[16];
+    supervisor->sum_count = (uint16_t)words[17];
+    supervisor->unread = (uint16_t)words[18];
 }
 #endif

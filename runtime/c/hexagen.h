@@ -159,6 +159,11 @@ typedef enum {
      * current sensor, an open or exchanged phase, a sensor's wrong sign, or wrong motor data.
      */
     HEXAGEN_FAULT_RESIDUAL = 8,
+    /**
+     * The currents of three sensors did not add up in so many samples in a row as the specification
+     * says, `current_sum_samples`: a dead or wrong sensor, or a current that leaves the motor.
+     */
+    HEXAGEN_FAULT_CURRENT_SUM = 9,
     /** A current ADC was at an end of its range: count 0, the largest count, or more. */
     HEXAGEN_FAULT_ADC_RANGE = 1,
     /**
@@ -355,12 +360,16 @@ int32_t hexagen_whole(int32_t number);
 /* ---- Supervision ------------------------------------------------------------------------- */
 
 /**
- * The phases with a current sensor, in the order of the sensors; the third phase has the rest of
- * their currents.
+ * The phases of the first and the second current sensor. The third phase has the rest of their
+ * currents, unless it has a sensor, too.
  */
 typedef enum { HEXAGEN_SENSED_AB = 0, HEXAGEN_SENSED_BC = 1, HEXAGEN_SENSED_CA = 2 } hexagen_sensed;
 
-/** Sign and offset of a current sensor. */
+/** Fraction bits of the ratio of two sensors' gains, and the ratio of equal ones. */
+#define HEXAGEN_RATIO_BITS 15U
+#define HEXAGEN_ALIKE INT32_C(0x8000)
+
+/** Sign, gain and offset of a current sensor. */
 typedef struct {
     /** Whether counts fall with the current into the motor. */
     bool inverted;
@@ -369,7 +378,34 @@ typedef struct {
     /** Least and greatest offset that calibration accepts, counts. */
     uint16_t offset_least;
     uint16_t offset_most;
+    /** Current of a count over that of the first sensor, with HEXAGEN_RATIO_BITS: 1/2 to 2. */
+    int32_t ratio;
 } hexagen_sensor;
+
+/**
+ * What a drive makes of three current sensors.
+ *
+ * Sensors in the low legs show the currents of legs that are low for long enough. Of three, at least
+ * two are: the leg that is high for longest, or is off, is the one that may not be read; its current
+ * is the rest of the other two.
+ */
+typedef struct {
+    /** Whether there is a third sensor. */
+    bool is_there;
+    /** Whether the sensors are in the low legs. */
+    bool is_low_side;
+    /** Largest compare value of a leg that is read at the end of the period. */
+    uint16_t readable;
+    /** Whether a command takes effect one period after the sample that it comes from. */
+    bool is_delayed;
+    /** Where all three are read, the largest sum of their currents without a fault, words of current. */
+    int32_t sum_tolerance;
+    /**
+     * Samples in a row with a larger sum, of those in which all three are read, that trip the drive; 0
+     * for none.
+     */
+    uint16_t sum_samples;
+} hexagen_third_sensor;
 
 /**
  * Limits of a drive's samples, and its start-up times. Words of current are ADC counts with
@@ -380,10 +416,12 @@ typedef struct {
     uint16_t adc_max;
     /** Fraction bits of words of current. */
     uint16_t current_bits;
-    /** The phases with a sensor. */
+    /** The phases of the first two sensors. */
     hexagen_sensed sensed;
-    /** Their sensors. */
-    hexagen_sensor sensors[2];
+    /** The sensors; a third that is not there is like the second. */
+    hexagen_sensor sensors[3];
+    /** What is made of the third. */
+    hexagen_third_sensor third;
     /** Trip level, words of current: a phase current above it trips. */
     int32_t trip;
     /** Least and greatest current over all counts and accepted offsets, words of current. */
@@ -431,57 +469,87 @@ typedef struct {
     HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
         offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
         stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most, \
-        HEXAGEN_SENSED_AB, adc_inverted, offset, offset_least, offset_most)
+        HEXAGEN_SENSED_AB, adc_inverted, offset, offset_least, offset_most, HEXAGEN_ALIKE)
 
-/** The same for any two sensors: the first one's sign and offset, then phases and the second's. */
+/** The same for any two sensors: the first one's sign and offset, then phases and the second. */
 #define HEXAGEN_LIMITS_OF(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
     offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
     stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most, \
-    sensed, second_inverted, second_offset, second_least, second_most) \
+    sensed, second_inverted, second_offset, second_least, second_most, second_ratio) \
+    HEXAGEN_LIMITS_OF_THREE(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
+        offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
+        stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most, \
+        sensed, second_inverted, second_offset, second_least, second_most, second_ratio, \
+        second_inverted, second_offset, second_least, second_most, second_ratio, \
+        false, false, 0, false, 0, 0)
+
+/** The same for three sensors: then the third, and what is made of it. */
+#define HEXAGEN_LIMITS_OF_THREE(name, adc_max, adc_inverted, current_bits, offset, offset_least, \
+    offset_most, trip, current_least, current_most, calibration_log2, precharge_periods, \
+    stall_periods, hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most, \
+    sensed, second_inverted, second_offset, second_least, second_most, second_ratio, \
+    third_inverted, third_offset, third_least, third_most, third_ratio, \
+    has_third, is_low_side, readable, is_delayed, sum_tolerance, sum_samples) \
     typedef int name##_hold[HEXAGEN_LIMITS_HOLD((int64_t)(adc_max), current_bits, trip, \
         (int64_t)(current_least), (int64_t)(current_most), calibration_log2, stall_periods, \
-        brake_periods) \
-        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), offset, offset_least, offset_most) \
-        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), second_offset, second_least, second_most) \
+        brake_periods, has_third) \
+        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), offset, offset_least, offset_most, HEXAGEN_ALIKE) \
+        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), second_offset, second_least, second_most, second_ratio) \
+        && HEXAGEN_SENSOR_HOLDS((int64_t)(adc_max), third_offset, third_least, third_most, third_ratio) \
         && (int64_t)(current_least) == HEXAGEN_LESSER( \
             HEXAGEN_LEAST((int64_t)(adc_max), adc_inverted, current_bits, (int64_t)(offset_most), \
-                (int64_t)(offset_least)), \
-            HEXAGEN_LEAST((int64_t)(adc_max), second_inverted, current_bits, \
-                (int64_t)(second_most), (int64_t)(second_least))) \
+                (int64_t)(offset_least), HEXAGEN_ALIKE), \
+            HEXAGEN_LESSER(HEXAGEN_LEAST((int64_t)(adc_max), second_inverted, current_bits, \
+                (int64_t)(second_most), (int64_t)(second_least), second_ratio), \
+            HEXAGEN_LEAST((int64_t)(adc_max), third_inverted, current_bits, \
+                (int64_t)(third_most), (int64_t)(third_least), third_ratio))) \
         && -(int64_t)(current_most) == HEXAGEN_LESSER( \
             -HEXAGEN_MOST((int64_t)(adc_max), adc_inverted, current_bits, (int64_t)(offset_most), \
-                (int64_t)(offset_least)), \
-            -HEXAGEN_MOST((int64_t)(adc_max), second_inverted, current_bits, \
-                (int64_t)(second_most), (int64_t)(second_least))) \
-        && ((sensed) == HEXAGEN_SENSED_AB \
+                (int64_t)(offset_least), HEXAGEN_ALIKE), \
+            HEXAGEN_LESSER(-HEXAGEN_MOST((int64_t)(adc_max), second_inverted, current_bits, \
+                (int64_t)(second_most), (int64_t)(second_least), second_ratio), \
+            -HEXAGEN_MOST((int64_t)(adc_max), third_inverted, current_bits, \
+                (int64_t)(third_most), (int64_t)(third_least), third_ratio))) \
+        && (((sensed) == HEXAGEN_SENSED_AB && !(has_third)) \
             || ((trip) <= (current_most) && -(int64_t)(trip) >= (current_least))) \
+        && ((sensed) == HEXAGEN_SENSED_AB || !(has_third)) && (sum_tolerance) >= 0 \
         ? 1 : -1]; \
     static const hexagen_limits name = { adc_max, current_bits, sensed, \
-        { { adc_inverted, offset, offset_least, offset_most }, \
-            { second_inverted, second_offset, second_least, second_most } }, \
+        { { adc_inverted, offset, offset_least, offset_most, HEXAGEN_ALIKE }, \
+            { second_inverted, second_offset, second_least, second_most, second_ratio }, \
+            { third_inverted, third_offset, third_least, third_most, third_ratio } }, \
+        { has_third, is_low_side, readable, is_delayed, sum_tolerance, sum_samples }, \
         trip, current_least, current_most, calibration_log2, precharge_periods, stall_periods, \
         hall_inverted, hall_glitches, sectors, brake_periods, start_periods, bus_least, bus_most }
 
 /**
- * Whether limits are valid, but for their sensors; the phase without a sensor has the negative sum
- * of two currents. A law takes its current, within the trip level, where it is that of a or b.
+ * Whether limits are valid, but for their sensors; the phase that is not read has the negative sum
+ * of two currents, and three are added, too. A law takes its current, within the trip level, where it
+ * is that of a or b.
  */
-#define HEXAGEN_LIMITS_HOLD(adc_max, bits, trip, low, high, log2, stall, brake) \
+#define HEXAGEN_LIMITS_HOLD(adc_max, bits, trip, low, high, log2, stall, brake, has_third) \
     ((bits) < 31 && (log2) < 16 && (adc_max) > 1 && (trip) > 0 && (stall) >= 0 \
         && (stall) < INT32_C(0x7fffffff) && (brake) >= 0 && (brake) < INT32_C(0x7fffffff) \
-        && -2 * (low) <= INT64_C(0x7fffffff) && 2 * (high) <= INT64_C(0x7fffffff) \
+        && ((has_third) ? -3 : -2) * (low) <= INT64_C(0x7fffffff) \
+        && ((has_third) ? 3 : 2) * (high) <= INT64_C(0x7fffffff) \
         && (adc_max) * (INT64_C(1) << ((log2) & 15)) <= INT64_C(0x7fffffff))
 
-#define HEXAGEN_SENSOR_HOLDS(adc_max, offset, least, most) \
-    ((least) <= (offset) && (offset) <= (most) && (most) <= (adc_max))
+#define HEXAGEN_SENSOR_HOLDS(adc_max, offset, least, most, ratio) \
+    ((least) <= (offset) && (offset) <= (most) && (most) <= (adc_max) \
+        && (ratio) >= HEXAGEN_ALIKE / 2 && (ratio) <= 2 * HEXAGEN_ALIKE)
 
 #define HEXAGEN_LESSER(x, y) ((x) < (y) ? (x) : (y))
 
-#define HEXAGEN_LEAST(adc_max, inverted, bits, most, least) \
-    (((inverted) ? (least) - (adc_max) : -(most)) * (INT64_C(1) << ((bits) & 31)))
+#define HEXAGEN_LEAST(adc_max, inverted, bits, most, least, ratio) \
+    HEXAGEN_SCALED(((inverted) ? (least) - (adc_max) : -(most)) * (INT64_C(1) << ((bits) & 31)), ratio)
 
-#define HEXAGEN_MOST(adc_max, inverted, bits, most, least) \
-    (((inverted) ? (most) : (adc_max) - (least)) * (INT64_C(1) << ((bits) & 31)))
+#define HEXAGEN_MOST(adc_max, inverted, bits, most, least, ratio) \
+    HEXAGEN_SCALED(((inverted) ? (most) : (adc_max) - (least)) * (INT64_C(1) << ((bits) & 31)), ratio)
+
+/** A sensor's current of the first sensor's gain, rounded half up; a division of positive numbers. */
+#define HEXAGEN_SCALED(current, ratio) \
+    (((current) * (ratio) + HEXAGEN_ALIKE / 2 + (INT64_C(1) << 60)) / HEXAGEN_ALIKE \
+        - (INT64_C(1) << 60) / HEXAGEN_ALIKE)
 
 /**
  * The supervisor of a drive: mode, first fault, offsets of the current ADCs.
@@ -493,7 +561,9 @@ typedef struct {
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
  *   mid-scale can let the true current rise to several times the trip level. The option
  *   `residual_timeout` notices many of these, after its time (HEXAGEN_FAULT_RESIDUAL);
- * - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
+ * - the current of the phase that is not read: it is taken as the negative sum of the other two. With
+ *   three sensors (`sensed_phases: abc`) the sum of all three is watched where all are read
+ *   (HEXAGEN_FAULT_CURRENT_SUM);
  * - a control interrupt that does not come: the last command stands;
  * - heat, shoot-through, and what is shorter than a control period;
  * - a bus voltage that nobody measures, or that rises between two calls of `set_bus`.
@@ -523,12 +593,17 @@ typedef struct {
     uint16_t hall_glitches;
     /** Periods under demand since the last Hall edge. */
     int32_t stall_count;
-    /** Sums of calibration samples of the first and the second sensor, counts. */
-    int32_t sum_a;
-    int32_t sum_b;
-    /** Offsets of both, words of current. */
-    int32_t offset_a;
-    int32_t offset_b;
+    /** Sums of calibration samples of the sensors, counts; 0 of a third that is not there. */
+    int32_t sum[3];
+    /** Their offsets, words of current. */
+    int32_t offset[3];
+    /** Samples in a row whose three currents do not add up. */
+    uint16_t sum_count;
+    /**
+     * With three sensors in the low legs: in two bits each, the leg that the command of the period
+     * that ends leaves unread, and with a delay that of the next period's; 0 to 2, or 3 for none.
+     */
+    uint16_t unread;
     /**
      * Rotation since control ended or the drive was made: Hall code of the last period, 0 before the
      * first.
@@ -555,7 +630,7 @@ typedef struct {
     int32_t hall_ticks;
 } hexagen_checked;
 
-/** The count of the first or second sensor, 0 or 1. */
+/** The count of a sensor, 0 to 2 for the first to the third. */
 static inline uint16_t hexagen_count(
     const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
 {
@@ -571,10 +646,14 @@ static inline int32_t hexagen_current(
 {
     const uint32_t word = (uint32_t)count << limits->current_bits;
     const uint32_t zero = (uint32_t)offset;
-    return hexagen_wrap(limits->sensors[sensor].inverted ? zero - word : word - zero);
+    const int32_t current =
+        hexagen_wrap(limits->sensors[sensor].inverted ? zero - word : word - zero);
+    return (limits->sensors[sensor].ratio == HEXAGEN_ALIKE)
+        ? current
+        : hexagen_mul_round(limits->sensors[sensor].ratio, current, HEXAGEN_RATIO_BITS);
 }
 
-/** Current of the phase without a sensor. */
+/** Current of the phase that is not read. */
 static inline int32_t hexagen_third(int32_t first, int32_t second)
 {
     return hexagen_wrap(UINT32_C(0) - ((uint32_t)first + (uint32_t)second));
@@ -608,6 +687,97 @@ static inline uint16_t hexagen_hall_of(const hexagen_limits *limits, const hexag
 static inline bool hexagen_is_hall_code(uint16_t hall)
 {
     return hall >= 1U && hall <= 6U;
+}
+
+/** No leg is left unread. */
+#define HEXAGEN_ALL_READ 3U
+
+/** The leg that the sample does not show, 0 to 2, or HEXAGEN_ALL_READ. */
+static inline uint16_t hexagen_unread(
+    const hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    if (!limits->third.is_there) {
+        return 2U;
+    }
+    return limits->third.is_low_side ? (uint16_t)(supervisor->unread & 3U) : HEXAGEN_ALL_READ;
+}
+
+/** Currents of the first and the second phase: measured, or the rest of the other two. */
+static inline void hexagen_sense(const hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const uint16_t *counts, int32_t *first, int32_t *second)
+{
+    const uint16_t unread = hexagen_unread(supervisor, limits);
+    const int32_t a = hexagen_current(limits, 0, counts[0], supervisor->offset[0]);
+    const int32_t b = hexagen_current(limits, 1, counts[1], supervisor->offset[1]);
+    const int32_t c = hexagen_current(limits, 2, counts[2], supervisor->offset[2]);
+    *first = (unread == 0U) ? hexagen_third(b, c) : a;
+    *second = (unread == 1U) ? hexagen_third(a, c) : b;
+}
+
+/** Whether the ADC of a leg that is read is at an end of its range. */
+static inline bool hexagen_has_end(const hexagen_supervisor *supervisor,
+    const hexagen_limits *limits, const hexagen_sample *sample)
+{
+    const uint16_t unread = hexagen_unread(supervisor, limits);
+    return (unread != 0U && hexagen_is_at_end(limits, hexagen_count(limits, sample, 0)))
+        || (unread != 1U && hexagen_is_at_end(limits, hexagen_count(limits, sample, 1)))
+        || (unread != 2U && hexagen_is_at_end(limits, hexagen_count(limits, sample, 2)));
+}
+
+/** Whether as many samples as trip had three currents that do not add up to nothing. */
+static inline bool hexagen_is_sum_off(
+    const hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    return limits->third.sum_samples != 0U && supervisor->sum_count == limits->third.sum_samples;
+}
+
+/** Counts such samples; true for as many as trip. */
+static inline bool hexagen_watch_sum(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample)
+{
+    const uint16_t most = limits->third.sum_samples;
+    if (!limits->third.is_there) {
+        return false;
+    }
+    if (supervisor->mode != HEXAGEN_MODE_RUN || most == 0U) {
+        supervisor->sum_count = 0;
+    } else if (hexagen_unread(supervisor, limits) == HEXAGEN_ALL_READ) {
+        uint32_t sum = 0;
+        uint16_t sensor;
+        for (sensor = 0; sensor < 3U; sensor++) {
+            const uint16_t read = hexagen_count(limits, sample, sensor);
+            const uint16_t count = (read < limits->adc_max) ? read : limits->adc_max;
+            sum += (uint32_t)hexagen_current(limits, sensor, count, supervisor->offset[sensor]);
+        }
+        if (!hexagen_exceeds(hexagen_wrap(sum), limits->third.sum_tolerance)) {
+            supervisor->sum_count = 0;
+        } else if (supervisor->sum_count < most) {
+            supervisor->sum_count = (uint16_t)(supervisor->sum_count + 1U);
+        } else {
+            supervisor->sum_count = most;
+        }
+    }
+    return hexagen_is_sum_off(supervisor, limits);
+}
+
+/**
+ * Follows the legs of a period, of which some may be read at its end and others not. Periods that
+ * rest are followed there.
+ */
+static inline void hexagen_follow_legs(
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, const hexagen_legs *legs)
+{
+    uint32_t leg = 0;
+    if (!limits->third.is_low_side) {
+        return;
+    }
+    while (leg < HEXAGEN_ALL_READ && legs->state[leg] != HEXAGEN_LEG_OFF
+        && (legs->state[leg] == HEXAGEN_LEG_LOW || legs->compare[leg] <= limits->third.readable)) {
+        leg++;
+    }
+    supervisor->unread = limits->third.is_delayed
+        ? (uint16_t)(((uint32_t)supervisor->unread >> 2) | (leg << 2))
+        : (uint16_t)leg;
 }
 
 /** Whether a phase current is above the trip level: one that is sensed, or the third. */
@@ -678,16 +848,17 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
     const bool is_sound = hexagen_is_sound(supervisor, limits, hall);
     const bool is_edge = hexagen_watch_hall(supervisor, limits, hall, is_sound);
     const bool is_stalled = hexagen_watch_stall(supervisor, limits, is_edge, set_point);
-    const uint16_t count_first = hexagen_count(limits, sample, 0);
-    const uint16_t count_second = hexagen_count(limits, sample, 1);
-    const int32_t first = hexagen_current(limits, 0, count_first, supervisor->offset_a);
-    const int32_t second = hexagen_current(limits, 1, count_second, supervisor->offset_b);
+    const bool is_sum_off = hexagen_watch_sum(supervisor, limits, sample);
+    const uint16_t counts[3] = { hexagen_count(limits, sample, 0),
+        hexagen_count(limits, sample, 1), hexagen_count(limits, sample, 2) };
+    int32_t first;
+    int32_t second;
+    hexagen_sense(supervisor, limits, counts, &first, &second);
     hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
     checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
-    return supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is_at_end(limits, count_first)
-        && !hexagen_is_at_end(limits, count_second) && is_sound
-        && !hexagen_is_over(limits, first, second) && !is_stalled;
+    return supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_has_end(supervisor, limits, sample)
+        && is_sound && !hexagen_is_over(limits, first, second) && !is_sum_off && !is_stalled;
 }
 
 /**
@@ -710,8 +881,8 @@ typedef struct {
 /**
  * A period without control, after hexagen_check returned false: continues start-up, trips on a
  * fault, bridges a disturbed Hall code, brakes, and returns what the drive does instead. In the
- * checked sample, counts are clamped to the ADC's range, the current of a phase without a sensor to
- * that of one with a sensor; a Hall code that is bridged is the last one, and another that no sensors
+ * checked sample, counts are clamped to the ADC's range, the current of a phase that is not read to
+ * that of one that is; a Hall code that is bridged is the last one, and another that no sensors
  * give is 0.
  */
 HEXAGEN_COLD hexagen_rested hexagen_rest(hexagen_supervisor *supervisor,
@@ -966,12 +1137,12 @@ bool hexagen_take(hexagen_port *port, const hexagen_units *units, hexagen_signal
 
 #ifdef HEXAGEN_VERIFICATION
 /** Words of a supervisor. */
-#define HEXAGEN_WORDS 15
+#define HEXAGEN_WORDS 19
 
 /**
  * Copies the words of a supervisor: mode, fault, countdown, sum_a, sum_b, offset_a, offset_b,
  * stall_count, hall_prev, hall_gap, hall_glitches, turn_hall, turn_age, turn_interval,
- * turn_direction.
+ * turn_direction, sum_c, offset_c, sum_count, unread.
  */
 void hexagen_words(const hexagen_supervisor *supervisor, int32_t *words);
 

@@ -220,6 +220,7 @@ impl<C: Control> ControlLoop<'_, C> {
         let (law, words) = (&mut core.law, &set_point.words);
         let mut observation = Observation::default();
         let command = C::step(law, words, &checked, rotor, &mut observation);
+        core.supervisor.follow_command(sensors, command.on());
         if set_point.signals.is_asked() {
             let on = command.on();
             set_point.signals.answer(checked, on, observation);

@@ -62,6 +62,9 @@ pub enum Fault {
     Hall = 3,
     /// A phase current was above the trip level.
     OverCurrent = 2,
+    /// The currents of three sensors did not add up in so many samples in a row as the specification
+    /// says, `current_sum_samples`: a dead or wrong sensor, or a current that leaves the motor.
+    CurrentSum = 9,
     /// No Hall edge within the stall time-out while the set-point was not 0.
     Stall = 4,
     /// A calibrated current offset was too far from its nominal value.
@@ -82,6 +85,7 @@ impl Fault {
             6 => Some(Self::OverVoltage),
             7 => Some(Self::UnderVoltage),
             8 => Some(Self::Residual),
+            9 => Some(Self::CurrentSum),
             _ => None,
         }
     }
@@ -96,6 +100,7 @@ impl fmt::Display for Fault {
             Self::UnderVoltage => "the bus voltage is too low",
             Self::Residual => "the currents do not follow the voltages",
             Self::Hall => "the Hall code is invalid",
+            Self::CurrentSum => "the phase currents do not add up",
             Self::Stall => "the rotor is stalled",
             Self::Offset => "a calibrated current offset is too far from its nominal value",
         })

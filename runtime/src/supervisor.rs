@@ -4,7 +4,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::arith::Word;
+use crate::arith::{Word, mul_round};
 use crate::status::{Fault, Mode, Status, number};
 use crate::{Checked, LegState, Sample};
 
@@ -56,21 +56,26 @@ impl Limits {
     /// every current, so that no computation of the supervisor can overflow.
     #[must_use]
     pub const fn hold(&self, sensors: &Sensors) -> bool {
-        let [first, second] = sensors.both(self);
-        let (one, other) = (self.range(first), self.range(second));
-        let low = if one[0] < other[0] { one[0] } else { other[0] };
-        let high = if one[1] > other[1] { one[1] } else { other[1] };
+        let [first, second, third] = sensors.all(self);
+        let (one, other) = (
+            self.range(first),
+            wider(self.range(second), self.range(third)),
+        );
+        let [low, high] = wider(one, other);
         let sum = (self.adc_max as i64) << (self.calibration_log2 & 15);
-        // The phase without a sensor has the negative sum of two currents.
+        // The phase that is not read has the negative sum of two currents; three are added, too.
         let word = 0x7fff_ffff;
+        let addends = if sensors.third.is_some() { 3 } else { 2 };
         // A law takes its current, within the trip level, where it is that of a or b.
-        let is_within = matches!(sensors.phases, SensedPhases::Ab)
+        let is_within = (matches!(sensors.phases, SensedPhases::Ab) && sensors.third.is_none())
             || (low <= -(self.trip as i64) && self.trip as i64 <= high);
         self.current_bits < 31
             && self.calibration_log2 < 16
             && self.adc_max > 1
             && self.includes(first)
             && self.includes(second)
+            && self.includes(third)
+            && sensors.are_sound()
             && self.trip > 0
             && self.stall_periods >= 0
             && self.stall_periods < word as i32
@@ -78,8 +83,8 @@ impl Limits {
             && self.brake_periods < word as i32
             && low == self.currents[0] as i64
             && high == self.currents[1] as i64
-            && -2 * low <= word
-            && 2 * high <= word
+            && -addends * low <= word
+            && addends * high <= word
             && sum <= word
             && is_within
     }
@@ -96,22 +101,25 @@ impl Limits {
         let one = 1_i64 << (self.current_bits & 31);
         let (top, zero) = (self.adc_max as i64 * one, 0);
         let (low, high) = (least as i64 * one, most as i64 * one);
-        if sensor.adc_inverted {
+        let [low, high] = if sensor.adc_inverted {
             [low - top, high - zero]
         } else {
             [zero - high, top - low]
-        }
+        };
+        [sensor.scaled(low), sensor.scaled(high)]
     }
 
-    /// The sensed currents in words of current; `offsets` are words of current, too.
+    /// Currents of the sensors' phases in words of current; `offsets` are words of current, too.
     #[inline]
-    fn sensed(&self, sensors: &Sensors, counts: [Word; 2], offsets: [Word; 2]) -> [Word; 2] {
-        let [first, second] = sensors.both(self);
-        let [first_count, second_count] = counts.map(|count| count << self.current_bits);
-        let [first_offset, second_offset] = offsets;
+    fn measured(&self, sensors: &Sensors, counts: [Word; 3], offsets: [Word; 3]) -> [Word; 3] {
+        let [first, second, third] = sensors.all(self);
+        let [first_count, second_count, third_count] =
+            counts.map(|count| count << self.current_bits);
+        let [first_offset, second_offset, third_offset] = offsets;
         [
             first.current(first_count, first_offset),
             second.current(second_count, second_offset),
+            third.current(third_count, third_offset),
         ]
     }
 
@@ -160,8 +168,8 @@ impl Limits {
     }
 }
 
-/// The phases with a current sensor, in the order of the sensors; the third phase has the rest of
-/// their currents, and its count in a [`Sample`] is ignored.
+/// The phases of the first and the second current sensor. The third phase has the rest of their
+/// currents, and its count in a [`Sample`] is ignored, unless it has a [`ThirdSensor`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensedPhases {
     /// Phases a and b.
@@ -173,13 +181,13 @@ pub enum SensedPhases {
 }
 
 impl SensedPhases {
-    /// What belongs to the sensed phases, first and second, of what belongs to phases a, b, c.
+    /// What belongs to the first, the second and the third phase, of what belongs to a, b, c.
     #[inline]
-    const fn of<T: Copy>(self, [a, b, c]: [T; 3]) -> [T; 2] {
+    const fn of<T: Copy>(self, [a, b, c]: [T; 3]) -> [T; 3] {
         match self {
-            Self::Ab => [a, b],
-            Self::Bc => [b, c],
-            Self::Ca => [c, a],
+            Self::Ab => [a, b, c],
+            Self::Bc => [b, c, a],
+            Self::Ca => [c, a, b],
         }
     }
 
@@ -194,7 +202,7 @@ impl SensedPhases {
     }
 }
 
-/// Sign and offset of a current sensor.
+/// Sign, gain and offset of a current sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sensor {
     /// Whether counts fall with the current into the motor.
@@ -203,27 +211,72 @@ pub struct Sensor {
     pub offset: u16,
     /// Least and greatest offset that calibration accepts, counts.
     pub offsets: [u16; 2],
+    /// Current of a count over that of the first sensor, with [`RATIO_BITS`](Self::RATIO_BITS)
+    /// fraction bits: 1/2 to 2.
+    pub ratio: i32,
 }
 
 impl Sensor {
+    /// Fraction bits of [`ratio`](Self::ratio).
+    pub const RATIO_BITS: u32 = 15;
+    /// The ratio of a sensor with the first one's gain.
+    pub const ALIKE: i32 = 1 << Self::RATIO_BITS;
+
     /// A phase current, of a count and an offset in words of current.
     #[inline]
     fn current(self, count: Word, offset: Word) -> Word {
-        if self.adc_inverted {
+        let current = if self.adc_inverted {
             offset - count
         } else {
             count - offset
+        };
+        if self.ratio == Self::ALIKE {
+            current
+        } else {
+            mul_round(Word(self.ratio), current, Self::RATIO_BITS)
         }
+    }
+
+    /// A number of the first sensor's gain.
+    const fn scaled(self, current: i64) -> i64 {
+        (current * self.ratio as i64 + (1 << (Self::RATIO_BITS - 1))) >> Self::RATIO_BITS
+    }
+
+    const fn has_ratio(self) -> bool {
+        self.ratio >= Self::ALIKE / 2 && self.ratio <= 2 * Self::ALIKE
     }
 }
 
-/// The two current sensors of a drive.
+/// The third of three current sensors, and what a drive makes of all three.
+///
+/// Sensors in the low legs show the currents of legs that are low for long enough. Of three, at least
+/// two are: the leg that is high for longest, or is off, is the one that may not be read; its current
+/// is the rest of the other two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ThirdSensor {
+    /// The sensor of the third phase.
+    pub sensor: Sensor,
+    /// For sensors in the low legs, the largest compare value of a leg that is read at the end of the
+    /// period; none for sensors in the phases, which are read at any instant.
+    pub readable: Option<u16>,
+    /// Whether a command takes effect one period after the sample that it comes from.
+    pub is_delayed: bool,
+    /// Where all three are read, the largest sum of their currents without a fault, words of current.
+    pub sum_tolerance: i32,
+    /// Samples in a row with a larger sum, of those in which all three are read, that trip the drive;
+    /// 0 for none.
+    pub sum_samples: u16,
+}
+
+/// The current sensors of a drive, two or three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sensors {
-    /// The phases that have them.
+    /// The phases of the first two.
     pub phases: SensedPhases,
-    /// The second sensor, where its sign or offset is not that of the first, which [`Limits`] have.
+    /// The second sensor, where it is not like the first, which [`Limits`] have.
     pub second: Option<Sensor>,
+    /// The third, if there is one.
+    pub third: Option<ThirdSensor>,
 }
 
 impl Sensors {
@@ -231,24 +284,95 @@ impl Sensors {
     pub const AB: Self = Self {
         phases: SensedPhases::Ab,
         second: None,
+        third: None,
     };
 
-    /// First and second sensor of a drive with these limits.
+    /// The sensors of a drive with these limits; in place of a third that is not there, the first.
     #[inline]
-    const fn both(&self, limits: &Limits) -> [Sensor; 2] {
+    const fn all(&self, limits: &Limits) -> [Sensor; 3] {
         let one = Sensor {
             adc_inverted: limits.adc_inverted,
             offset: limits.offset,
             offsets: limits.offsets,
+            ratio: Sensor::ALIKE,
         };
-        match self.second {
-            None => [one, one],
-            Some(other) => [one, other],
+        let second = match self.second {
+            None => one,
+            Some(second) => second,
+        };
+        let third = match self.third {
+            None => one,
+            Some(third) => third.sensor,
+        };
+        [one, second, third]
+    }
+
+    /// Whether ratios are in their range, and a third sensor has its tolerance and no other name.
+    const fn are_sound(&self) -> bool {
+        let second = match self.second {
+            None => true,
+            Some(second) => second.has_ratio(),
+        };
+        let third = match self.third {
+            None => true,
+            Some(third) => {
+                third.sensor.has_ratio()
+                    && third.sum_tolerance >= 0
+                    && matches!(self.phases, SensedPhases::Ab)
+            }
+        };
+        second && third
+    }
+}
+
+/// The leg that a sample of three sensors in the low legs does not show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Unread {
+    First,
+    Second,
+    Third,
+    /// All are read.
+    None,
+}
+
+impl Unread {
+    /// The leg with this number, of which two bits count: 0 to 2, or 3 for none.
+    #[inline]
+    const fn from_number(number: u8) -> Self {
+        match number & 3 {
+            0 => Self::First,
+            1 => Self::Second,
+            2 => Self::Third,
+            _ => Self::None,
+        }
+    }
+
+    /// The leg of a command that cannot be read at the end of its period: one that is off, or high for
+    /// too long.
+    #[inline]
+    fn of([a, b, c]: [Option<u16>; 3], readable: u16) -> Self {
+        let is_read = |on: Option<u16>| matches!(on, Some(on) if on <= readable);
+        if !is_read(a) {
+            Self::First
+        } else if !is_read(b) {
+            Self::Second
+        } else if !is_read(c) {
+            Self::Third
+        } else {
+            Self::None
         }
     }
 }
 
-/// Current of the phase without a sensor.
+/// The least and the greatest of two ranges.
+const fn wider([low, high]: [i64; 2], [other_low, other_high]: [i64; 2]) -> [i64; 2] {
+    [
+        if low < other_low { low } else { other_low },
+        if high > other_high { high } else { other_high },
+    ]
+}
+
+/// Current of the phase that is not read.
 #[inline]
 fn third_of([first, second]: [Word; 2]) -> Word {
     -(first + second)
@@ -315,7 +439,9 @@ const fn is_hall_code(hall: u8) -> bool {
 /// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
 ///   mid-scale can let the true current rise to several times the trip level. The option
 ///   `residual_timeout` notices many of these, after its time ([`Fault::Residual`]);
-/// - the current of the phase that has no sensor: it is taken as the negative sum of the other two;
+/// - the current of the phase that is not read: it is taken as the negative sum of the other two. With
+///   three sensors (`sensed_phases: abc`) the sum of all three is watched where all are read
+///   ([`Fault::CurrentSum`]);
 /// - a control interrupt that does not come: the last command stands;
 /// - heat, shoot-through, and what is shorter than a control period;
 /// - a bus voltage that nobody measures, or that rises between two calls of `set_bus`.
@@ -338,10 +464,15 @@ pub struct Supervisor {
     hall_glitches: u16,
     /// Periods under demand since the last Hall edge.
     stall_count: Word,
-    /// Sums of calibration samples of the first and the second sensor, counts.
-    sums: [Word; 2],
-    /// Offsets of both, words of current.
-    offsets: [Word; 2],
+    /// Sums of calibration samples of the sensors, counts; 0 of a third that is not there.
+    sums: [Word; 3],
+    /// Their offsets, words of current.
+    offsets: [Word; 3],
+    /// Samples in a row whose three currents do not add up.
+    sum_count: u16,
+    /// With three sensors in the low legs: in two bits each, the leg that the command of the period
+    /// that ends leaves unread, and with a delay that of the next period's; 0 to 2, or 3 for none.
+    unread: u8,
     /// What start and braking know of the rotor.
     turn: Turn,
 }
@@ -429,8 +560,8 @@ pub enum Rest {
 
 impl Supervisor {
     /// Names of the state words, in the order of [`Self::words`]; `_a` is the first sensed phase,
-    /// `_b` the second.
-    pub const NAMES: [&'static str; 15] = [
+    /// `_b` the second, `_c` the third.
+    pub const NAMES: [&'static str; 19] = [
         "mode",
         "fault",
         "countdown",
@@ -446,13 +577,21 @@ impl Supervisor {
         "turn_age",
         "turn_interval",
         "turn_direction",
+        "sum_c",
+        "offset_c",
+        "sum_count",
+        "unread",
     ];
 
     /// A supervisor that starts, with nominal offsets.
     #[must_use]
     pub const fn new(limits: &Limits, sensors: &Sensors) -> Self {
-        let [first, second] = sensors.both(limits);
+        let [first, second, third] = sensors.all(limits);
         let bits = limits.current_bits;
+        let third = match sensors.third {
+            None => Word(0),
+            Some(_) => Word((third.offset as i32).wrapping_shl(bits)),
+        };
         Self {
             mode: before_control(limits.start_periods),
             fault: None,
@@ -461,11 +600,14 @@ impl Supervisor {
             hall_gap: 0,
             hall_glitches: 0,
             stall_count: Word(0),
-            sums: [Word(0); 2],
+            sums: [Word(0); 3],
             offsets: [
                 Word((first.offset as i32).wrapping_shl(bits)),
                 Word((second.offset as i32).wrapping_shl(bits)),
+                third,
             ],
+            sum_count: 0,
+            unread: 0,
             turn: Turn::UNKNOWN,
         }
     }
@@ -482,24 +624,104 @@ impl Supervisor {
         sample: &Sample,
         is_demanded: impl FnOnce() -> bool,
     ) -> Option<Checked> {
-        let [first, second] = sensors.phases.of(sample.adc);
-        let counts = [first.into(), second.into()];
-        let i = limits.sensed(sensors, counts, self.offsets);
+        let adc = sensors.phases.of(sample.adc);
+        let i = self.sensed(limits, sensors, adc.map(Word::from));
         let hall = limits.hall_of(sample);
         let is_sound = self.is_sound(limits, hall);
         let is_edge = self.watch_hall(limits, hall, is_sound);
         let stalled = self.watch_stall(limits, is_edge, is_demanded);
+        let is_off = self.watch_sum(limits, sensors, adc);
         let is_fit = self.mode == Mode::Run
-            && !limits.is_at_end(first)
-            && !limits.is_at_end(second)
+            && !self.is_at_end(limits, sensors, adc)
             && is_sound
             && !limits.is_over(i)
+            && !is_off
             && !stalled;
         is_fit.then(|| Checked {
             i: sensors.phases.a_and_b(i, third_of(i)),
             hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         })
+    }
+
+    /// The leg that the sample does not show.
+    #[inline]
+    const fn unread(&self, sensors: &Sensors) -> Unread {
+        match sensors.third {
+            None => Unread::Third,
+            Some(ThirdSensor { readable: None, .. }) => Unread::None,
+            Some(_) => Unread::from_number(self.unread),
+        }
+    }
+
+    /// Currents of the first and the second phase: measured, or the rest of the other two.
+    #[inline]
+    fn sensed(&self, limits: &Limits, sensors: &Sensors, counts: [Word; 3]) -> [Word; 2] {
+        let [first, second, third] = limits.measured(sensors, counts, self.offsets);
+        match self.unread(sensors) {
+            Unread::First => [third_of([second, third]), second],
+            Unread::Second => [first, third_of([first, third])],
+            Unread::Third | Unread::None => [first, second],
+        }
+    }
+
+    /// Whether the ADC of a leg that is read is at an end of its range.
+    #[inline]
+    fn is_at_end(&self, limits: &Limits, sensors: &Sensors, adc: [u16; 3]) -> bool {
+        let [first, second, third] = adc.map(|count| limits.is_at_end(count));
+        let unread = self.unread(sensors);
+        (unread != Unread::First && first)
+            || (unread != Unread::Second && second)
+            || (unread != Unread::Third && third)
+    }
+
+    /// Counts samples whose three currents do not add up to nothing; true for as many as trip.
+    #[inline]
+    fn watch_sum(&mut self, limits: &Limits, sensors: &Sensors, adc: [u16; 3]) -> bool {
+        let Some(third) = sensors.third else {
+            return false;
+        };
+        if self.mode != Mode::Run || third.sum_samples == 0 {
+            self.sum_count = 0;
+        } else if self.unread(sensors) == Unread::None {
+            let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
+            let [first, second, third_current] = limits.measured(sensors, counts, self.offsets);
+            let sum = first + second + third_current;
+            self.sum_count = if sum.exceeds(third.sum_tolerance) {
+                self.sum_count.saturating_add(1).min(third.sum_samples)
+            } else {
+                0
+            };
+        }
+        self.is_sum_off(sensors)
+    }
+
+    #[inline]
+    const fn is_sum_off(&self, sensors: &Sensors) -> bool {
+        match sensors.third {
+            Some(third) => third.sum_samples != 0 && self.sum_count == third.sum_samples,
+            None => false,
+        }
+    }
+
+    /// Follows the command of a period: timer counts for which the upper switches of legs a, b, c are
+    /// on, none of a leg that is off. Periods that [`rest`](Self::rest) are followed there.
+    #[inline]
+    pub fn follow_command(&mut self, sensors: &Sensors, on: [Option<u16>; 3]) {
+        let Some(ThirdSensor {
+            readable: Some(readable),
+            is_delayed,
+            ..
+        }) = sensors.third
+        else {
+            return;
+        };
+        let next = Unread::of(on, readable) as u8;
+        self.unread = if is_delayed {
+            self.unread >> 2 | next << 2
+        } else {
+            next
+        };
     }
 
     /// Whether a Hall code is not disturbed.
@@ -550,14 +772,31 @@ impl Supervisor {
     /// A period without control, after a [`check`](Self::check) that gave no sample: continues
     /// start-up, trips on a fault, bridges a disturbed Hall code, brakes, and returns what the drive
     /// does instead. In the sample, counts are clamped to the ADC's range, the current of a phase
-    /// without a sensor to that of one with a sensor; a Hall code that is bridged is the last one, and
+    /// that is not read to that of one that is; a Hall code that is bridged is the last one, and
     /// another that no sensors give is 0.
     pub fn rest(&mut self, limits: &Limits, sensors: &Sensors, sample: &Sample) -> (Checked, Rest) {
+        let (checked, rest) = self.go_without(limits, sensors, sample);
+        if let Rest::Legs(state) = rest {
+            let on = match state {
+                LegState::Off => None,
+                LegState::Low | LegState::Pulsed => Some(0),
+            };
+            self.follow_command(sensors, [on; 3]);
+        }
+        (checked, rest)
+    }
+
+    fn go_without(
+        &mut self,
+        limits: &Limits,
+        sensors: &Sensors,
+        sample: &Sample,
+    ) -> (Checked, Rest) {
         let adc = sensors.phases.of(sample.adc);
         let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
-        let i = limits.sensed(sensors, counts, self.offsets);
+        let i = self.sensed(limits, sensors, counts);
         let [least, most] = limits.currents;
-        let third = third_of(i).min(most).max(least);
+        let within = |i: Word| i.min(most).max(least);
         let sampled = limits.hall_of(sample);
         let is_sound = self.is_sound(limits, sampled);
         let is_bridged = !is_sound && self.bridge(limits);
@@ -569,16 +808,18 @@ impl Supervisor {
             0
         };
         let checked = Checked {
-            i: sensors.phases.a_and_b(i, third),
+            i: sensors.phases.a_and_b(i, third_of(i)).map(within),
             hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         };
-        let found = if adc.into_iter().any(|count| limits.is_at_end(count)) {
+        let found = if self.is_at_end(limits, sensors, adc) {
             Some(Fault::AdcRange)
         } else if !is_sound && !is_bridged {
             Some(Fault::Hall)
         } else if limits.is_over(i) {
             Some(Fault::OverCurrent)
+        } else if self.is_sum_off(sensors) {
+            Some(Fault::CurrentSum)
         } else if self.is_stalled(limits) {
             Some(Fault::Stall)
         } else {
@@ -624,15 +865,19 @@ impl Supervisor {
 
     /// Calibration averages the counts of all its samples; then pre-charge counts its periods down,
     /// and the start follows.
-    fn start_up(&mut self, limits: &Limits, sensors: &Sensors, [count_a, count_b]: [Word; 2]) {
+    fn start_up(&mut self, limits: &Limits, sensors: &Sensors, counts: [Word; 3]) {
         match self.mode {
             Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
             Mode::Start => self.mode = before_control(self.countdown),
             Mode::Calibrate => {
                 let most = Word::from(limits.adc_max) << limits.calibration_log2;
-                let [sum_a, sum_b] = self.sums;
+                let ([sum_a, sum_b, sum_c], [a, b, c]) = (self.sums, counts);
                 // The countdown ends the sums before this limit, whatever the initial state.
-                self.sums = [(sum_a + count_a).min(most), (sum_b + count_b).min(most)];
+                let third = match sensors.third {
+                    None => Word(0),
+                    Some(_) => (sum_c + c).min(most),
+                };
+                self.sums = [(sum_a + a).min(most), (sum_b + b).min(most), third];
                 self.countdown = self.countdown.saturating_sub(1);
                 if self.countdown == 0 {
                     self.end_calibration(limits, sensors);
@@ -673,8 +918,9 @@ impl Supervisor {
                 .map(|offset| Word::from(offset) << limits.calibration_log2);
             sum < least || sum > most
         };
-        let ([first, second], [sum_a, sum_b]) = (sensors.both(limits), self.sums);
-        if is_bad(first, sum_a) || is_bad(second, sum_b) {
+        let ([first, second, third], [sum_a, sum_b, sum_c]) = (sensors.all(limits), self.sums);
+        let is_third_bad = sensors.third.is_some() && is_bad(third, sum_c);
+        if is_bad(first, sum_a) || is_bad(second, sum_b) || is_third_bad {
             self.trip(Fault::Offset);
             return;
         }
@@ -751,6 +997,7 @@ impl Supervisor {
         if may_reset {
             *self = Self {
                 offsets: self.offsets,
+                unread: self.unread,
                 ..Self::new(limits, sensors)
             };
         }
@@ -762,7 +1009,7 @@ impl Supervisor {
         if self.mode != Mode::Tripped {
             self.mode = Mode::Calibrate;
             self.countdown = 1_u16.wrapping_shl(limits.calibration_log2);
-            self.sums = [Word(0); 2];
+            self.sums = [Word(0); 3];
         }
     }
 
@@ -797,8 +1044,8 @@ impl Supervisor {
     /// The state words, in the order of [`Self::NAMES`]. For verification.
     #[must_use]
     pub fn words(&self) -> [i32; Self::NAMES.len()] {
-        let [sum_a, sum_b] = self.sums;
-        let [offset_a, offset_b] = self.offsets;
+        let [sum_a, sum_b, sum_c] = self.sums;
+        let [offset_a, offset_b, offset_c] = self.offsets;
         let turn = &self.turn;
         [
             self.mode as i32,
@@ -816,6 +1063,10 @@ impl Supervisor {
             turn.age.0,
             turn.interval.0,
             turn.direction.0,
+            sum_c.0,
+            offset_c.0,
+            self.sum_count.into(),
+            self.unread.into(),
         ]
     }
 
@@ -837,6 +1088,10 @@ impl Supervisor {
             age,
             interval,
             direction,
+            sum_c,
+            offset_c,
+            sum_count,
+            unread,
         ] = words;
         *self = Self {
             mode: Mode::from_number(mode),
@@ -846,8 +1101,10 @@ impl Supervisor {
             hall_gap: hall_gap as u16,
             hall_glitches: hall_glitches as u16,
             stall_count: Word(stall_count),
-            sums: [Word(sum_a), Word(sum_b)],
-            offsets: [Word(offset_a), Word(offset_b)],
+            sums: [Word(sum_a), Word(sum_b), Word(sum_c)],
+            offsets: [Word(offset_a), Word(offset_b), Word(offset_c)],
+            sum_count: sum_count as u16,
+            unread: unread as u8,
             turn: Turn {
                 hall: turn_hall as u8,
                 age: Word(age),

@@ -27,12 +27,16 @@ dead_time = "500 ns"
 pub const SHORT: &str = "calibration_samples = 16\n";
 
 /// Sensors in the phases.
-const SENSORS: [&str; 5] = [
+const SENSORS: [&str; 9] = [
     "sensed_phases = \"bc\"",
     "sensed_phases = \"ca\"\nadc_inverted = \"on\"",
     "adc_inverted = [\"off\", \"on\"]\nadc_offset = [2048, 1990]",
     "sensed_phases = \"bc\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]",
     "sensed_phases = \"ca\"\nadc_offset = [2000, 2048]\nprecharge = \"0.2 ms\"",
+    "sensed_phases = \"abc\"\ncurrent_sum_samples = 3",
+    "sensed_phases = \"abc\"\nadc_inverted = [\"on\", \"off\", \"on\"]\nadc_offset = [2100, 2011, 2050]",
+    "adc_gain = [\"20 mA/count\", \"31 mA/count\"]",
+    "sensed_phases = \"abc\"\nadc_gain = [\"20 mA/count\", \"25 mA/count\", \"18 mA/count\"]\ncurrent_sum_tolerance = \"5 A\"",
 ];
 
 /// Sensors in the low legs.
@@ -59,7 +63,12 @@ const SLOW: [&str; 3] = [
 
 /// A drive's specification: fields of the inverter, and the controller's section.
 pub fn specification(inverter: &str, controller: &str) -> String {
-    format!("{MOTOR}{inverter}\n[controller]\n{controller}\n")
+    let motor = if inverter.contains("adc_gain") {
+        MOTOR.replace("adc_range = \"40 A\"\n", "")
+    } else {
+        MOTOR.to_owned()
+    };
+    format!("{motor}{inverter}\n[controller]\n{controller}\n")
 }
 
 /// What each drive is, and its specification.

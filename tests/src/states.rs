@@ -28,11 +28,13 @@ pub struct States<'a> {
     constants: Vec<i32>,
     comparisons: Comparisons,
     /// Least and greatest valid sum of calibration samples of each sensor.
-    calibration: [[i64; 2]; 2],
+    calibration: Vec<[i64; 2]>,
     count_bits: u32,
     adc_max: i64,
     /// Of each sensor.
-    inverted: [bool; 2],
+    inverted: Vec<bool>,
+    /// Of each sensor, its gain over that of the first.
+    ratio: Vec<f64>,
     /// Trip level, counts.
     trip: i64,
     codes: [u8; 6],
@@ -54,11 +56,13 @@ impl<'a> States<'a> {
             limits(&generated.interface.limits),
             sensors(&generated.interface.limits),
         );
-        let offsets = [
-            Some(limits.offsets),
-            sensors.second.map(|second| second.offsets),
-        ];
-        let offsets = offsets.map(|offsets| offsets.unwrap_or(limits.offsets));
+        let second = sensors
+            .second
+            .map_or(limits.offsets, |second| second.offsets);
+        let third = sensors.third.map(|third| third.sensor.offsets);
+        let offsets: Vec<[u16; 2]> = [limits.offsets, second].into_iter().chain(third).collect();
+        let gains = (0..offsets.len()).map(|sensor| inverter.adc_gain.of(sensor));
+        let gains: Vec<f64> = gains.collect();
         let words = program.states.iter();
         let words = words.map(|word| (word.interval.low as i32, word.interval.high as i32));
         let constants = program.constants.iter().map(|constant| constant.raw);
@@ -67,16 +71,17 @@ impl<'a> States<'a> {
         Self {
             random: Rng::with_seed(seed),
             names,
-            ranges: supervisor_ranges(&limits, offsets)
+            ranges: supervisor_ranges(&limits, &sensors, &offsets)
                 .into_iter()
                 .chain(words)
                 .collect(),
             constants: constants.chain(of_limits).collect(),
             comparisons: Comparisons::of(program),
-            calibration: offsets.map(|ends| ends.map(samples)),
+            calibration: offsets.iter().map(|ends| ends.map(samples)).collect(),
             count_bits: limits.current_bits,
             adc_max: (1 << inverter.adc_bits) - 1,
-            inverted: [0, 1].map(|sensor| inverter.adc_gain.of(sensor) < 0.0),
+            inverted: gains.iter().map(|gain| *gain < 0.0).collect(),
+            ratio: gains.iter().map(|gain| (gain / gains[0]).abs()).collect(),
             trip: i64::from(limits.trip) >> limits.current_bits,
             limits,
             sensors,
@@ -304,7 +309,7 @@ impl<'a> States<'a> {
 
     /// Counts for currents of any value, by the offsets; mostly below the trip level. `is_slow`
     /// leaves no current.
-    fn fill_currents(&mut self, words: &mut [i32], is_slow: bool) -> [u16; 2] {
+    fn fill_currents(&mut self, words: &mut [i32], is_slow: bool) -> [u16; 3] {
         let span = self.adc_max << self.count_bits;
         let trip = (self.trip << self.count_bits) + 1;
         let mut currents = [0; 2];
@@ -326,14 +331,22 @@ impl<'a> States<'a> {
         if is_slow {
             currents = [0; 2];
         }
-        let mut counts = [0; 2];
+        let mut counts = [0; 3];
         let third = -(currents[0] + currents[1]);
         let of_phases = self.sensed.of_phases(currents, third);
-        for (sensor, name) in ["a", "b"].into_iter().enumerate() {
+        let strayed = if self.random.u8(..8) == 0 {
+            self.random.i64(-trip..=trip)
+        } else {
+            0
+        };
+        let currents = [currents[0], currents[1], third + strayed];
+        let sensors = self.inverted.len();
+        for (sensor, name) in ["a", "b", "c"].into_iter().enumerate().take(sensors) {
+            let current = (currents[sensor] as f64 / self.ratio[sensor]).round() as i64;
             let current = if self.inverted[sensor] {
-                -currents[sensor]
+                -current
             } else {
-                currents[sensor]
+                current
             };
             // offset = count 2^bits - current has to lie within its range.
             let place = self.place(&format!("offset_{name}"));
@@ -402,7 +415,7 @@ impl<'a> States<'a> {
         // A sum of calibration has room for the samples to come.
         let samples = i64::from(set("countdown", &|word| word).max(1));
         let room = samples.saturating_mul(self.adc_max);
-        for name in ["sum_a", "sum_b"] {
+        for name in ["sum_a", "sum_b", "sum_c"] {
             let place = self.names.iter().position(|known| *known == name);
             let most = place.map_or(0, |place| i64::from(self.ranges[place].1) - room);
             set(name, &|word| word.min(most.max(0) as i32));
@@ -423,16 +436,17 @@ impl<'a> States<'a> {
 
     /// The last samples of most calibrations make sums just inside, or just outside, the tolerance.
     fn end_calibration(&mut self, words: &mut [i32], sample: Sample) {
-        let places = ["mode", "countdown", "sum_a", "sum_b"].map(|name| self.place(name));
-        let [Some(mode), Some(countdown), sum_a, sum_b] = places else {
+        let places = ["mode", "countdown"].map(|name| self.place(name));
+        let [Some(mode), Some(countdown)] = places else {
             return;
         };
+        let sums = ["sum_a", "sum_b", "sum_c"].map(|name| self.place(name));
         if words[mode] != 1 || self.random.u8(..4) == 0 {
             return;
         }
         words[countdown] = self.random.i32(0..3);
         let counts = self.sensed.of_sensors(sample.adc());
-        for (sensor, place) in [sum_a, sum_b].into_iter().enumerate() {
+        for (sensor, place) in sums.into_iter().enumerate().take(self.calibration.len()) {
             let ([least, most], count) = (self.calibration[sensor], counts[sensor]);
             let sum = match self.random.u8(..8) {
                 0 => least + self.random.i64(-1..=1),
@@ -453,6 +467,7 @@ impl<'a> States<'a> {
         let name = self.names[index];
         let bound = [
             "sum_a",
+            "sum_c",
             "sum_b",
             "countdown",
             "t1",
@@ -558,20 +573,34 @@ impl<'a> States<'a> {
 /// Least and greatest value of each of the supervisor's words.
 fn supervisor_ranges(
     limits: &Limits,
-    offsets: [[u16; 2]; 2],
+    sensors: &Sensors,
+    offsets: &[[u16; 2]],
 ) -> [(i32, i32); Supervisor::NAMES.len()] {
     let samples = 1 << limits.calibration_log2;
     let full = i32::from(limits.adc_max) << limits.calibration_log2;
     let longest = limits.precharge_periods.max(limits.start_periods).into();
     let word = |offset: u16| i32::from(offset) << limits.current_bits;
-    let [first, second] = offsets.map(|[least, most]| (word(least), word(most)));
+    let ends = |sensor: usize| {
+        let [least, most] = offsets[sensor];
+        (word(least), word(most))
+    };
+    let third = sensors.third;
     Supervisor::NAMES.map(|name| match name {
         "mode" | "turn_hall" => (0, 6),
-        "fault" => (0, 7),
+        "fault" => (0, 9),
         "countdown" => (0, samples.max(longest)),
         "sum_a" | "sum_b" => (0, full),
-        "offset_a" => first,
-        "offset_b" => second,
+        "offset_a" => ends(0),
+        "offset_b" => ends(1),
+        "sum_c" if third.is_some() => (0, full),
+        "offset_c" if third.is_some() => ends(2),
+        "sum_count" => (0, third.map_or(0, |third| third.sum_samples.into())),
+        "unread" => match third {
+            Some(third) if third.readable.is_none() => (0, 0),
+            Some(third) => (0, if third.is_delayed { 15 } else { 3 }),
+            None => (0, 0),
+        },
+        "sum_c" | "offset_c" => (0, 0),
         "stall_count" => (0, limits.stall_periods),
         "hall_prev" if limits.stall_periods > 0 || limits.hall_glitches > 0 => (0, 6),
         "hall_gap" => (0, limits.hall_glitches.into()),

@@ -15,6 +15,8 @@ use rayon::prelude::*;
 trait Supervised {
     /// A period: the passed currents, or the number of the state of all legs if the drive rests.
     fn period(&mut self, adc: [u16; 3], hall: u8, is_demanded: bool) -> ([i32; 2], Option<i32>);
+    /// Follows the legs of a controlled period.
+    fn follow(&mut self, legs: hexagen::Legs);
     /// A period begins behind a call of `set_bus` with this count.
     fn bus(&mut self, counts: u16);
     fn reset(&mut self);
@@ -58,6 +60,9 @@ macro_rules! new {
                         }
                     };
                 ([checked.i_a().0, checked.i_b().0], leg)
+            }
+            fn follow(&mut self, legs: hexagen::Legs) {
+                self.0.follow_command(&self.2, legs.on());
             }
             fn bus(&mut self, counts: u16) {
                 if let Some(fault) = self.1.bus_fault(counts) {
@@ -108,16 +113,25 @@ macro_rules! new {
                 start_periods: limits.start_periods,
                 bus_counts: limits.bus_counts,
             };
+            let sensor = |sensor: hexagen::Sensor| $module::Sensor {
+                adc_inverted: sensor.adc_inverted,
+                offset: sensor.offset,
+                offsets: sensor.offsets,
+                ratio: sensor.ratio,
+            };
             let sensors = $module::Sensors {
                 phases: match sensors.phases {
                     hexagen::SensedPhases::Ab => $module::SensedPhases::Ab,
                     hexagen::SensedPhases::Bc => $module::SensedPhases::Bc,
                     hexagen::SensedPhases::Ca => $module::SensedPhases::Ca,
                 },
-                second: sensors.second.map(|second| $module::Sensor {
-                    adc_inverted: second.adc_inverted,
-                    offset: second.offset,
-                    offsets: second.offsets,
+                second: sensors.second.map(sensor),
+                third: sensors.third.map(|third| $module::ThirdSensor {
+                    sensor: sensor(third.sensor),
+                    readable: third.readable,
+                    is_delayed: third.is_delayed,
+                    sum_tolerance: third.sum_tolerance,
+                    sum_samples: third.sum_samples,
                 }),
             };
             let supervisor = $module::Supervisor::new(&limits, &sensors);
@@ -136,7 +150,7 @@ macro_rules! new {
 )]
 mod planted {
     use super::{Limits, New, Sensors, Stop, Supervised, WORDS};
-    use hexagen::{LegState, arith};
+    use hexagen::{Command, LegState, arith};
     use sample::{Checked, Sample};
     use status::{Fault, Mode, Status};
 
@@ -176,10 +190,14 @@ const DRIVES: [Drive; 4] = [
     },
 ];
 
-/// Sensors of further drives: in other phases, and unlike.
-const SENSORS: [&str; 2] = [
+/// Sensors of further drives: in other phases, unlike, and three of them.
+const SENSORS: [&str; 5] = [
     "sensed_phases = \"bc\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]",
     "sensed_phases = \"ca\"\nadc_offset = [2000, 2048]",
+    "sensed_phases = \"abc\"\nadc_gain = [\"20 mA/count\", \"25 mA/count\", \"18 mA/count\"]\ncurrent_sum_samples = 2",
+    "sensed_phases = \"abc\"\nadc_offset = [2000, 2048, 2100]\nadc_inverted = [\"off\", \"off\", \"on\"]\ncurrent_sum_samples = 3\n\
+     current_sensing = \"low_side\"\nsettling_time = \"2.5 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
+    "sensed_phases = \"abc\"\ncurrent_sum_samples = 0",
 ];
 
 /// Steps in streams, and from arbitrary states, within which a fault must be detected.
@@ -339,6 +357,9 @@ impl Pair {
             .period(sample.adc(), sample.hall(), is_demanded);
         self.legs = self.model.step(sample);
         self.model.state_words(&mut self.words);
+        if leg.is_none() {
+            self.supervisor.follow(self.legs);
+        }
         let expected = (!self.model.trace().run).then(|| self.legs.state()[0] as i32);
         leg == expected
             && self.words.starts_with(&self.supervisor.words())

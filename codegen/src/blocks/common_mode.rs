@@ -1,8 +1,9 @@
 //! The common mode of three pulsed legs: free for the motor, and bound by how long a leg must be low (semantics, step 11).
 
+use super::limit::within_bus;
 use super::modulate::half_period;
-use super::{Bus, Lowering};
-use crate::ir::{Phases, named};
+use super::{Bus, Limited, Lowering};
+use crate::ir::{Coefficient, Expr, Flag, Named, Phases, named};
 use crate::spec::CommonMode;
 
 /// Legs of which each is low for a while in every period.
@@ -13,17 +14,25 @@ pub struct CommonModeRule {
     /// Compare value of 100 % duty.
     period: u32,
     /// Largest compare value.
-    top: u32,
+    pub top: u32,
+    /// Largest compare value of the second highest leg, which is less where the highest is not read.
+    second: u32,
 }
 
 impl CommonModeRule {
     /// The rule of a policy on this inverter.
     pub fn new(l: &Lowering<'_>, policy: CommonMode) -> Self {
         let inverter = &l.spec.inverter;
+        let readable = inverter.readable_top();
         Self {
             policy,
             period: inverter.timer_period,
-            top: inverter.readable_top(),
+            // Centred pulses leave all three legs alike.
+            top: match policy {
+                CommonMode::Centred => readable,
+                CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_top(),
+            },
+            second: readable,
         }
     }
 
@@ -61,22 +70,94 @@ impl CommonModeRule {
             CommonMode::Centred => 2 * self.top - self.period,
             CommonMode::Readable | CommonMode::ClampedLow => self.top,
         };
-        let share = f64::from(counts) / f64::from(self.period);
-        let doc = "Share of the bus that legs reach which must be low for a while.";
-        let volts = if bus.ratio.is_none() {
-            let doc = format!(
-                "Voltage that legs reach which must be low for a while: {counts} timer counts, words of voltage."
-            );
-            l.number("v_reach", i64::from(counts) << l.scale.voltage_bits, &doc)
-        } else {
-            let k_reach =
-                l.coefficient("k_reach", share, l.scale.word, doc, &format!("{share:.6}"));
-            named! {
-                let v_reach = k_reach * bus.volts;
-            }
-            v_reach
-        };
+        let whose = "legs reach which must be low for a while";
+        let volts = self.share(l, bus, counts, ["k_reach", "v_reach", whose]);
         Bus { volts, ..bus }
+    }
+
+    /// The voltage of so many counts.
+    fn share<'b>(
+        self,
+        l: &Lowering<'b>,
+        bus: Bus<'b>,
+        counts: u32,
+        [k_name, v_name, whose]: [&'static str; 3],
+    ) -> Expr<'b> {
+        if bus.ratio.is_none() {
+            let doc = format!("Voltage that {whose}: {counts} timer counts, words of voltage.");
+            let value = i64::from(counts) << l.scale.voltage_bits;
+            return l.number(v_name, value, &doc);
+        }
+        let share = f64::from(counts) / f64::from(self.period);
+        let (doc, formula) = (
+            format!("Share of the bus that {whose}."),
+            format!("{share:.6}"),
+        );
+        let k_share = l.coefficient(k_name, share, l.scale.word, &doc, &formula);
+        (k_share * bus.volts).named(v_name)
+    }
+
+    /// Of sensors in all low legs two are read, those of the two lower legs: lowers the second highest leg to where it
+    /// can be.
+    pub fn second_readable<'b>(
+        self,
+        l: &Lowering<'b>,
+        third: Coefficient,
+        bus: Bus<'b>,
+        limited: Limited<'b>,
+    ) -> Limited<'b> {
+        if self.second >= self.top {
+            return limited;
+        }
+        let doc = "Second highest leg; of three sensors in the low legs those of the two lower legs are read.";
+        l.b.stage("find_second_leg", &[doc]);
+        let v_second = self.share(
+            l,
+            bus,
+            self.second,
+            ["k_second", "v_second", "the second highest leg reaches"],
+        );
+        let legs = limited.centred;
+        let [high, low] = legs.extremes(["leg_high", "leg_low"]);
+        named! {
+            let second = legs.sum() - high - low;
+            let second_most = low + v_second;
+            let unreadable = second.is_above(second_most);
+        }
+        let doc = "The second highest leg lowered to where its sensor can be read.";
+        l.b.guarded_stage("lower_second_leg", unreadable, true, &[doc]);
+        let is_high = highest(legs, high);
+        named! {
+            let leg_lowered = Phases::each(|x| {
+                is_high[x].choose(legs.0[x], legs.0[x].min(second_most))
+            });
+            let lowered_mean = third * (second - second_most);
+            let u_lowered = Phases::<2>::each(|x| {
+                within_bus(limited.u.0[x] - (legs.0[x] - leg_lowered.0[x]) + lowered_mean, bus.volts)
+            });
+        }
+        let [u_a, u_b, leg_a, leg_b, leg_c] = l.b.join([
+            ("u_a_read", u_lowered.a(), limited.u.a()),
+            ("u_b_read", u_lowered.b(), limited.u.b()),
+            ("leg_a_now", leg_lowered.a(), legs.a()),
+            ("leg_b_now", leg_lowered.b(), legs.b()),
+            ("leg_c_now", leg_lowered.c(), legs.c()),
+        ]);
+        Limited {
+            u: Phases([u_a, u_b]),
+            centred: Phases([leg_a, leg_b, leg_c]),
+        }
+    }
+
+    /// The largest voltage of a leg that may be high for so many counts, with half a count to round.
+    fn pulse<'b>(l: &Lowering<'b>, counts: u32, [name, whose]: [&str; 2]) -> Expr<'b> {
+        let half_count = 1_i64 << (l.scale.voltage_bits - 1);
+        let value = (i64::from(counts) << l.scale.voltage_bits) + half_count;
+        let doc = format!(
+            "Largest compare value{whose}, and half a count to round: {} timer counts, words of voltage.",
+            f64::from(counts) + 0.5
+        );
+        l.number(name, value, &doc)
     }
 
     /// Lifts voltages of zero middle, words of the nominal bus, to where their pulses lie.
@@ -84,17 +165,33 @@ impl CommonModeRule {
         let half_count = 1_i32 << (l.scale.voltage_bits - 1);
         let half = || half_period(l);
         let [high, low] = volts.extremes(["pulse_max", "pulse_min"]);
+        let lift = match self.policy {
+            CommonMode::Centred => half(),
+            CommonMode::Readable => half().min(Self::pulse(l, self.top, ["pulse_top", ""]) - high),
+            CommonMode::ClampedLow => -low + half_count,
+        };
+        let lift = if self.second < self.top {
+            named! {
+                let pulse_second = volts.sum() - high - low;
+            }
+            let names = ["pulse_second_top", " of the second highest leg"];
+            lift.min(Self::pulse(l, self.second, names) - pulse_second)
+        } else {
+            lift
+        };
         named! {
-            let pulse_lift = match self.policy {
-                CommonMode::Centred => half(),
-                CommonMode::Readable => {
-                    let top = (i64::from(self.top) << l.scale.voltage_bits) + i64::from(half_count);
-                    let doc = format!("Largest compare value, and half a count to round: {} timer counts, words of voltage.", f64::from(self.top) + 0.5);
-                    half().min(l.number("pulse_top", top, &doc) - high)
-                }
-                CommonMode::ClampedLow => -low + half_count,
-            };
+            let pulse_lift = lift;
         }
         volts.map(|volts| volts + pulse_lift)
     }
+}
+
+/// Which leg is the highest; of two that are, the first.
+fn highest<'b>(legs: Phases<'b, 3>, high: Expr<'b>) -> [Flag<'b>; 3] {
+    named! {
+        let a_is_high = legs.a().is(high);
+        let b_is_high = legs.b().is(high) & !a_is_high;
+        let c_is_high = !(a_is_high | b_is_high);
+    }
+    [a_is_high, b_is_high, c_is_high]
 }

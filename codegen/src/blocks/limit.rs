@@ -400,7 +400,7 @@ fn middle(legs: Phases<'_, 3>) -> Expr<'_> {
 }
 
 /// A value that never exceeds the bus, clamped so that the intervals show it.
-fn within_bus<'b>(value: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
+pub(super) fn within_bus<'b>(value: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
     let least_bus = Interval::symmetric(bus.interval().low);
     if least_bus.contains(value.interval()) {
         return value;

@@ -213,9 +213,8 @@ impl<'b> Lowering<'b> {
 
     /// Range of currents over all counts and accepted offsets, words of current.
     pub fn current_range(&self) -> Interval {
-        let [low, high] = self.spec.inverter.current_counts();
-        let bits = self.scale.current_bits;
-        Interval::new(i64::from(low) << bits, i64::from(high) << bits)
+        let [low, high] = self.spec.inverter.current_range(self.scale.current_bits);
+        Interval::new(low, high)
     }
 
     /// Greatest magnitude of a phase current in words of current.

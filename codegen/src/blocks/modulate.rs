@@ -81,7 +81,7 @@ impl<'b> Modulator<'b> {
                 let pulse = Phases::each(|x| {
                     self.shifted(nominal_share(limited.centred.0[x], self.bus), x)
                 });
-                let compare_pulsed = common_mode.lifted(l, pulse).map(|lifted| counts(l, lifted));
+                let compare_pulsed = common_mode.lifted(l, pulse).map(|lifted| counts(l, lifted, common_mode.top));
             }
             return Command {
                 compares: compare_pulsed,
@@ -89,11 +89,12 @@ impl<'b> Modulator<'b> {
             };
         }
         let is_lifted = self.bus.ratio.is_none();
+        let readable = l.spec.inverter.readable_top();
         named! {
             let compare_pulsed = Phases::each(|x| {
                 let centred = limited.centred.0[x];
                 if is_lifted {
-                    counts(l, self.shifted(centred, x))
+                    counts(l, self.shifted(centred, x), readable)
                 } else {
                     self.compare_centred(l, centred, x)
                 }
@@ -107,7 +108,7 @@ impl<'b> Modulator<'b> {
 
     fn compare_centred(&self, l: &Lowering<'b>, centred: Expr<'b>, x: usize) -> Expr<'b> {
         let scaled = self.shifted(nominal_share(centred, self.bus), x);
-        counts(l, scaled + half_period(l))
+        counts(l, scaled + half_period(l), l.spec.inverter.readable_top())
     }
 
     fn shifted(&self, volts: Expr<'b>, x: usize) -> Expr<'b> {
@@ -226,7 +227,8 @@ pub fn compare_of<'b>(
 ) -> Expr<'b> {
     let nominal = nominal_share(volts, bus);
     let shifted = shift.map_or(nominal, |shift| nominal + shift);
-    counts(l, shifted + (1 << (l.scale.voltage_bits - 1)))
+    let half_count = 1 << (l.scale.voltage_bits - 1);
+    counts(l, shifted + half_count, l.spec.inverter.readable_top())
 }
 
 /// A voltage scaled from the measured to the nominal bus, which is the timer period.
@@ -237,18 +239,17 @@ fn nominal_share<'b>(volts: Expr<'b>, bus: Bus<'b>) -> Expr<'b> {
     }
 }
 
-/// The compare value of a lifted voltage, which includes half a count for rounding.
-fn counts<'b>(l: &Lowering<'b>, lifted: Expr<'b>) -> Expr<'b> {
+/// The compare value of a lifted voltage, which includes half a count for rounding; at most `top`.
+fn counts<'b>(l: &Lowering<'b>, lifted: Expr<'b>, top: u32) -> Expr<'b> {
     let count = (-f64::from(l.scale.voltage_bits)).exp2();
     let doc = "Duty before rounding to a compare value";
     l.b.state_error("duty", lifted, [doc, "timer counts"], count);
     let counts = lifted >> l.scale.voltage_bits;
-    let inverter = &l.spec.inverter;
-    let largest = i64::from(inverter.readable_top());
+    let largest = i64::from(top);
     if Interval::new(0, largest).contains(counts.interval()) {
         return counts;
     }
-    let top = if inverter.readable_top() == inverter.timer_period {
+    let top = if top == l.spec.inverter.timer_period {
         l.number("timer_period", largest, "Compare value of 100 % duty.")
     } else {
         let doc = "Largest compare value: the lower switch is on for long enough on either side of the pulse.";

@@ -123,6 +123,8 @@ codes! {
     MinimumLowTime = 320,
     /// A list that does not hold a value of each sensed phase.
     SensedPhases = 321,
+    /// Gains of two current sensors that differ too much.
+    UnlikeGains = 322,
     /// A bus voltage that the board is not made for.
     OutsideOfBoard = 330,
     /// A controller that does not exist.
@@ -165,8 +167,6 @@ codes! {
     TripFarAbove = 610,
     /// Hysteresis control may reach the trip current without a fault.
     SwingAboveTrip = 611,
-    /// A third current sensor is not read.
-    UnreadSensor = 612,
     /// The residual watch allows for more than faults cause.
     WatchIsBlind = 613,
     /// An internal error of the generator.

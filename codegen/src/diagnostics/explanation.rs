@@ -316,6 +316,12 @@ impl Code {
                 "adc_bits = 12\nadc_offset = 2048",
                 "Give the count at zero current; it lies near the middle.",
             ),
+            Self::UnlikeGains => say(
+                "The currents of all sensors are scaled to the first one's counts, within a factor of two.",
+                "adc_gain = [\"20 mA/count\", \"50 mA/count\"]",
+                "adc_gain = [\"20 mA/count\", \"21 mA/count\"]",
+                "Correct the gain of one sensor, or sense phases whose amplifiers are alike.",
+            ),
             Self::SensingWindow => say(
                 "A leg whose current is read in its low leg must be low around the sampling instant.",
                 "bus_voltage = \"48 V\"\ncurrent_sensing = \"low_side\"\nsettling_time = \"20 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
@@ -475,12 +481,6 @@ impl Code {
                 "a phcc drive whose adc_range is little above its rated current",
                 "the same drive with a wider adc_range or a lower max_current",
                 "Lower max_current or widen adc_range.",
-            ),
-            Self::UnreadSensor => say(
-                "Two phase currents give the third. Of three sensors this version reads those of phases a and b.",
-                "sensed_phases = \"abc\"",
-                "sensed_phases = \"ab\"",
-                "Name two phases, or leave it: nothing is wrong.",
             ),
             Self::WatchIsBlind => say(
                 "residual_timeout allows for a resistance of twice the stated one, and for dead time. Where that takes half the bus at max_current, a dead sensor or an open phase causes no more.",

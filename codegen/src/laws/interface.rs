@@ -9,7 +9,7 @@ use crate::blocks::Scale;
 use crate::diagnostics::{engineering, frequency, rpm};
 use crate::interface::{
     Interface, Limits, OptionEntry, PublicConstant, ResidualWatch, SensedPhases, Sensor, Sensors,
-    Unit, Units,
+    ThirdSensor, Unit, Units,
 };
 use crate::scaling::Scaled;
 use crate::spec::{self, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
@@ -46,8 +46,9 @@ pub fn interface(
 
 fn limits(spec: &Spec, scale: Scale) -> Limits {
     let inverter = &spec.inverter;
-    let words = |counts: i32| counts << scale.current_bits;
-    let [first, second] = sensors(inverter);
+    let words = |current: i64| current as i32;
+    let sensors = sensors(inverter);
+    let (first, second) = (sensors[0], sensors[1]);
     Limits {
         adc_max: inverter.adc_max() as u16,
         adc_inverted: first.adc_inverted,
@@ -55,7 +56,7 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
         offset: first.offset,
         offsets: first.offsets,
         trip: (inverter.trip_current * scale.current() + 0.5).floor() as i32,
-        currents: inverter.current_counts().map(words),
+        currents: inverter.current_range(scale.current_bits).map(words),
         calibration_log2: inverter.calibration_log2,
         precharge_periods: inverter.precharge_periods as u16,
         stall_periods: inverter.stall_periods as i32,
@@ -70,25 +71,32 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
             phases: match inverter.sensed_phases {
                 spec::SensedPhases::Bc => SensedPhases::Bc,
                 spec::SensedPhases::Ca => SensedPhases::Ca,
-                // Of three sensors those of a and b are read.
                 spec::SensedPhases::Ab | spec::SensedPhases::Abc => SensedPhases::Ab,
             },
             second: (second != first).then_some(second),
+            third: sensors.get(2).map(|third| ThirdSensor {
+                sensor: *third,
+                readable: inverter.readable_at_end().map(|top| top as u16),
+                is_delayed: spec.controller.common().delay > 0,
+                sum_tolerance: (inverter.current_sum).map_or(0, |sum| {
+                    (sum.tolerance * scale.current() + 0.5).floor() as i32
+                }),
+                sum_samples: inverter.current_sum.map_or(0, |sum| sum.samples as u16),
+            }),
         },
     }
 }
 
-/// First and second sensor.
-fn sensors(inverter: &InverterSpec) -> [Sensor; 2] {
-    let sensors = inverter.sensors();
-    [0, 1].map(|place| {
-        let sensor = sensors[place];
-        Sensor {
+fn sensors(inverter: &InverterSpec) -> Vec<Sensor> {
+    let sensors = inverter.sensors().into_iter();
+    sensors
+        .map(|sensor| Sensor {
             adc_inverted: sensor.gain < 0.0,
             offset: sensor.offset as u16,
             offsets: inverter.offsets(sensor).map(|offset| offset as u16),
-        }
-    })
+            ratio: inverter.ratio(sensor),
+        })
+        .collect()
 }
 
 fn units(spec: &Spec, scale: Scale) -> Units {

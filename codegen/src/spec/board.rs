@@ -8,7 +8,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::catalogue::{self, Part};
 
 /// Fields that a board has and a drive with another setting does without.
-const OF_SETTINGS: [(&str, &str, &[&str]); 2] = [
+const OF_SETTINGS: [(&str, &str, &[&str]); 3] = [
     (
         "v_bus",
         "measured",
@@ -21,8 +21,14 @@ const OF_SETTINGS: [(&str, &str, &[&str]); 2] = [
             "settling_time",
             "aperture_time",
             "conversion_time",
+            "current_adcs",
             "sampling_lead",
         ],
+    ),
+    (
+        "sensed_phases",
+        "abc",
+        &["current_sum_tolerance", "current_sum_samples"],
     ),
 ];
 

@@ -52,7 +52,10 @@ pub use model::{
 pub use option_texts::help as option_help;
 pub use rule::Rule;
 pub use schema::section_of;
-pub use sensing::{CurrentSensing, CurrentSensor, SensedPhases, SensingTimes, SensingWindow};
+pub use sensing::{
+    CurrentSensing, CurrentSensor, CurrentSum, RATIO_BITS, SensedPhases, SensingTimes,
+    SensingWindow,
+};
 pub use toml_syntax::{parse_board, parse_toml};
 pub use variant::{apply_variant, variant_of};
 pub use words::Word;

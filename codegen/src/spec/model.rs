@@ -4,7 +4,8 @@
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
 use crate::spec::{
-    ControllerSpec, CurrentSensing, CurrentSensor, EmfSource, Reference, SensedPhases,
+    ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, RATIO_BITS, Reference,
+    SensedPhases,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -339,6 +340,8 @@ pub struct InverterSpec {
     pub sensed_phases: SensedPhases,
     /// Where the sensors are.
     pub current_sensing: CurrentSensing,
+    /// Three currents that do not add up are a fault; with three sensors only.
+    pub current_sum: Option<CurrentSum>,
     /// Time for which each leg that switches is low in every PWM period, second.
     pub minimum_low_time: f64,
     /// Greatest deviation of a calibrated offset from `adc_offset`, counts.
@@ -433,16 +436,20 @@ impl InverterSpec {
         ]
     }
 
-    /// Least and greatest current of any count at any accepted offset of any sensor, counts.
-    pub fn current_counts(&self) -> [i32; 2] {
-        let top = self.adc_max() as i32;
+    /// Least and greatest current of any count at any accepted offset of any sensor, counts of the first
+    /// with so many fraction bits.
+    pub fn current_range(&self, fraction_bits: u32) -> [i64; 2] {
+        let top = i64::from(self.adc_max());
         let ranges = self.sensors().into_iter().map(|sensor| {
-            let [least, most] = self.offsets(sensor).map(|offset| offset as i32);
-            if sensor.gain < 0.0 {
+            let [least, most] = self.offsets(sensor).map(i64::from);
+            let range = if sensor.gain < 0.0 {
                 [least - top, most]
             } else {
                 [-most, top - least]
-            }
+            };
+            let ratio = i64::from(self.ratio(sensor));
+            let half = 1 << (RATIO_BITS - 1);
+            range.map(|current| ((current << fraction_bits) * ratio + half) >> RATIO_BITS)
         });
         ranges.fold([0; 2], |[low, high], [least, most]| {
             [low.min(least), high.max(most)]

@@ -131,13 +131,21 @@ fn write_sensors(text: &mut Text, inverter: &InverterSpec) {
             settling,
             aperture,
             conversion,
+            converters,
             lead,
         } = times;
         text.word("current_sensing", "low_side");
         text.number("settling_time", settling);
         text.number("aperture_time", aperture);
         text.number("conversion_time", conversion);
+        if converters > 1 {
+            text.number("current_adcs", converters);
+        }
         text.number("sampling_lead", lead);
+    }
+    if let Some(sum) = inverter.current_sum {
+        text.number("current_sum_tolerance", sum.tolerance);
+        text.number("current_sum_samples", sum.samples);
     }
     if inverter.minimum_low_time > 0.0 {
         text.number("minimum_low_time", inverter.minimum_low_time);
@@ -231,6 +239,7 @@ mod tests {
                     offset: 2048,
                 }],
                 sensed_phases: SensedPhases::Ab,
+                current_sum: None,
                 current_sensing: CurrentSensing::InPhase,
                 minimum_low_time: 0.0,
                 offset_tolerance: 102,
@@ -333,6 +342,7 @@ commutation_timeout = 8
             settling: 1e-6,
             aperture: 2e-7,
             conversion: 0.0,
+            converters: 1,
             lead: 0.0,
         });
         inverter.minimum_low_time = 2e-6;

@@ -44,6 +44,15 @@ impl CurrentSensing {
     }
 }
 
+/// When the currents of three sensors do not add up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurrentSum {
+    /// Largest sum without a fault, ampere.
+    pub tolerance: f64,
+    /// Samples in a row with a larger one that are a fault.
+    pub samples: u32,
+}
+
 /// What a sensor in the low leg needs, second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensingTimes {
@@ -51,11 +60,16 @@ pub struct SensingTimes {
     pub settling: f64,
     /// Time from the sampling instant for which a converter's input must stay.
     pub aperture: f64,
-    /// Time from a conversion to the next one of the same ADC; 0 where each phase has its own.
+    /// Time from a conversion to the next one of the same ADC.
     pub conversion: f64,
+    /// Converters that sample different phases at once.
+    pub converters: u32,
     /// Time from the sampling instant to the timer's turning point.
     pub lead: f64,
 }
+
+/// Fraction bits of the ratio of two sensors' gains.
+pub const RATIO_BITS: u32 = 15;
 
 /// A sensor of a phase current.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +100,12 @@ impl InverterSpec {
         std::iter::once(first).chain(others).collect()
     }
 
+    /// Gain of a sensor over that of the first, with [`RATIO_BITS`].
+    pub fn ratio(&self, sensor: CurrentSensor) -> i32 {
+        let ratio = sensor.gain.abs() / self.adc_gain.abs();
+        (ratio * f64::from(1 << RATIO_BITS)).round() as i32
+    }
+
     /// Period of the PWM, second.
     pub fn pwm_period(&self) -> f64 {
         self.t_s / f64::from(self.pwm_per_control)
@@ -101,8 +121,8 @@ impl InverterSpec {
         match self.current_sensing {
             CurrentSensing::InPhase => None,
             CurrentSensing::LowSide(times) => {
-                let conversions = self.sensed_phases.phases().len();
-                Some(times.window(self.dead_time, conversions))
+                let phases = self.sensed_phases.phases().len();
+                Some(times.window(self.dead_time, phases))
             }
         }
     }
@@ -114,6 +134,22 @@ impl InverterSpec {
         let window = self.window();
         let half = window.map_or(0.0, |window| window.before.max(window.after));
         self.counts_less(half).min(self.largest_compare())
+    }
+
+    /// Largest compare value of the leg that is high for longest. Of three sensors its own may be left unread at the
+    /// end of the period; at the beginning it is read, if another leg is the highest of the period before.
+    pub fn highest_top(&self) -> u32 {
+        match (self.sensed_phases, self.window()) {
+            (SensedPhases::Abc, Some(window)) => {
+                self.counts_less(window.after).min(self.largest_compare())
+            }
+            _ => self.readable_top(),
+        }
+    }
+
+    /// Largest compare value of a leg that is sampled at the end of its period; none with sensors in the phases.
+    pub fn readable_at_end(&self) -> Option<u32> {
+        self.window().map(|window| self.counts_less(window.before))
     }
 
     /// Largest compare value of any leg: `timer_period`, less what `minimum_low_time` takes.
@@ -129,9 +165,9 @@ impl InverterSpec {
 }
 
 impl SensingTimes {
-    /// The window of so many conversions one after the other.
-    pub fn window(self, dead_time: f64, conversions: usize) -> SensingWindow {
-        let further = conversions.saturating_sub(1) as f64;
+    /// The window of so many phases.
+    pub fn window(self, dead_time: f64, phases: usize) -> SensingWindow {
+        let further = f64::from((phases as u32).div_ceil(self.converters) - 1);
         let after = self.aperture + further * self.conversion - self.lead;
         SensingWindow {
             before: dead_time + self.settling + self.lead,

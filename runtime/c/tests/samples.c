@@ -98,8 +98,8 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
     hexagen_start(&supervisor, limits);
     supervisor.mode = mode;
     supervisor.countdown = 2;
-    supervisor.offset_a = (int32_t)(offset_a * (INT64_C(1) << limits->current_bits));
-    supervisor.offset_b = (int32_t)(offset_b * (INT64_C(1) << limits->current_bits));
+    supervisor.offset[0] = (int32_t)(offset_a * (INT64_C(1) << limits->current_bits));
+    supervisor.offset[1] = (int32_t)(offset_b * (INT64_C(1) << limits->current_bits));
     passes = hexagen_check(&supervisor, limits, &sample, &set_point, &checked);
     EXPECT(passes == (mode == HEXAGEN_MODE_RUN && fault == HEXAGEN_FAULT_NONE));
     if (passes) {

@@ -61,7 +61,7 @@ const ALL: [Limits; 12] = [
 /// A supervisor calibrated to these offsets, words of current.
 fn calibrated(limits: &Limits, [offset_a, offset_b]: [i32; 2]) -> Supervisor {
     Supervisor {
-        offsets: [Word(offset_a), Word(offset_b)],
+        offsets: [Word(offset_a), Word(offset_b), Word(0)],
         ..Supervisor::new(limits, &Sensors::AB)
     }
 }
@@ -344,7 +344,7 @@ fn calibration_takes_offsets_within_their_range_and_no_others() {
                     assert_eq!(supervisor.fault, fault, "{limits:?} {adc:?}");
                     let expected = if is_good { adc } else { [limits.offset; 2] };
                     let words = expected.map(|count| Word::from(count) << limits.current_bits);
-                    assert_eq!(supervisor.offsets, words, "{limits:?} {adc:?}");
+                    assert_eq!(supervisor.offsets[..2], words, "{limits:?} {adc:?}");
                 }
             }
         }
@@ -370,7 +370,11 @@ fn a_mean_between_two_counts_keeps_its_fraction() {
             let sample = Sample::with_hall([count; 2], HALL);
             supervisor.rest(&limits, &Sensors::AB, &sample);
         }
-        assert_eq!(supervisor.offsets, [Word(expected); 2], "{current_bits}");
+        assert_eq!(
+            supervisor.offsets[..2],
+            [Word(expected); 2],
+            "{current_bits}"
+        );
     }
 }
 
@@ -579,8 +583,10 @@ fn accepts(limits: &Limits, mode: Mode) {
         mode,
         fault: (mode == Mode::Tripped).then_some(Fault::Hall),
         countdown: 2,
-        offsets: [Word(123); 2],
-        sums: [Word(5); 2],
+        offsets: [Word(123); 3],
+        sums: [Word(5); 3],
+        sum_count: 3,
+        unread: 0,
         hall_prev: 3,
         hall_gap: 1,
         hall_glitches: 2,
@@ -593,7 +599,7 @@ fn accepts(limits: &Limits, mode: Mode) {
     let is_ready = matches!(mode, Mode::Run | Mode::Start) || is_off;
     assert_eq!(is_reset, is_ready || mode == Mode::Tripped);
     let cleared = Supervisor {
-        offsets: [Word(123); 2],
+        offsets: [Word(123); 3],
         ..Supervisor::new(limits, &Sensors::AB)
     };
     let starts = limits.start_periods > 0;
@@ -609,7 +615,7 @@ fn accepts(limits: &Limits, mode: Mode) {
     let calibrates = Supervisor {
         mode: Mode::Calibrate,
         countdown: 16,
-        sums: [Word(0); 2],
+        sums: [Word(0); 3],
         ..begun.clone()
     };
     let is_ignored = mode == Mode::Tripped;
@@ -682,8 +688,10 @@ fn words_round_trip() {
         hall_gap: 5,
         hall_glitches: 0x7fff,
         stall_count: Word(-7),
-        sums: [Word(8), Word(i32::MIN)],
-        offsets: [Word(-9), Word(i32::MAX)],
+        sums: [Word(8), Word(i32::MIN), Word(5)],
+        sum_count: 7,
+        unread: 14,
+        offsets: [Word(-9), Word(i32::MAX), Word(6)],
         turn: TURN,
     };
     let mut other = Supervisor::new(&ALL[0], &Sensors::AB);

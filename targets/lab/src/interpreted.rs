@@ -1,7 +1,7 @@
 //! The generator's interpreter as a drive.
 
 use crate::{Inputs, limits, sensors};
-use hexagen::{Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
+use hexagen::{Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
 use hexagen_codegen::interface::{Interface, ResidualWatch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter};
 use hexagen_reference::Stop;
@@ -164,12 +164,14 @@ impl<'g> Interpreted<'g> {
             },
         };
         let results = machine.step(&places.inputs.words(&checked))?;
-        Ok(Legs::new(
+        let legs = Legs::new(
             places.compare.map(|place| results[place] as u16),
             places
                 .legs
                 .map(|place| LegState::from_number(results[place])),
-        ))
+        );
+        supervisor.follow_command(sensors, legs.on());
+        Ok(legs)
     }
 
     fn set(&mut self, setter: Setter, word: i32) {

@@ -1,6 +1,6 @@
 //! Tables of a generated drive in the types of the runtime.
 
-use hexagen::{Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor};
+use hexagen::{Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor};
 use hexagen_codegen::interface::{self, FormatEntry};
 use hexagen_codegen::ir::Program;
 use std::collections::BTreeSet;
@@ -55,18 +55,34 @@ pub fn limits(limits: &interface::Limits) -> Limits {
 
 /// The current sensors.
 pub fn sensors(limits: &interface::Limits) -> Sensors {
-    let interface::Sensors { phases, second } = limits.sensors;
+    let interface::Sensors {
+        phases,
+        second,
+        third,
+    } = limits.sensors;
     Sensors {
         phases: match phases {
             interface::SensedPhases::Ab => SensedPhases::Ab,
             interface::SensedPhases::Bc => SensedPhases::Bc,
             interface::SensedPhases::Ca => SensedPhases::Ca,
         },
-        second: second.map(|second| Sensor {
-            adc_inverted: second.adc_inverted,
-            offset: second.offset,
-            offsets: second.offsets,
+        second: second.map(sensor),
+        third: third.map(|third| ThirdSensor {
+            sensor: sensor(third.sensor),
+            readable: third.readable,
+            is_delayed: third.is_delayed,
+            sum_tolerance: third.sum_tolerance,
+            sum_samples: third.sum_samples,
         }),
+    }
+}
+
+fn sensor(sensor: interface::Sensor) -> Sensor {
+    Sensor {
+        adc_inverted: sensor.adc_inverted,
+        offset: sensor.offset,
+        offsets: sensor.offsets,
+        ratio: sensor.ratio,
     }
 }
 

@@ -35,7 +35,7 @@ static int32_t unit;
 
 static int has_offsets(int32_t adc_a, int32_t adc_b)
 {
-    return drive.supervisor.offset_a == adc_a * unit && drive.supervisor.offset_b == adc_b * unit;
+    return drive.supervisor.offset[0] == adc_a * unit && drive.supervisor.offset[1] == adc_b * unit;
 }
 
 /* A start with a rotor that stands, which takes as long as each other one. */
@@ -67,7 +67,7 @@ int main(void)
     hexagen_signals signals;
     hub_trip_record record;
     hub_init(&drive);
-    unit = drive.supervisor.offset_a / 2048;
+    unit = drive.supervisor.offset[0] / 2048;
     EXPECT(has_offsets(2048, 2048));
     EXPECT(hub_status(&drive).mode == HEXAGEN_MODE_START && starts() && is_running());
     hub_calibrate(&drive);

@@ -142,8 +142,16 @@ pub struct Inverter {
     pub aperture_time: Option<f64>,
     /// Time from a conversion to the next of the same ADC, second. Low side only.
     pub conversion_time: Option<f64>,
+    /// Converters that sample at once.
+    #[serde(default = "one")]
+    pub current_adcs: u32,
     /// Time from the sampling instant to the turning point, second. Low side only.
     pub sampling_lead: Option<f64>,
+    /// Largest sum of three measured currents without a fault, ampere; none: the sum is not watched.
+    pub current_sum_tolerance: Option<f64>,
+    /// Samples in a row with a larger sum that are a fault.
+    #[serde(default)]
+    pub current_sum_samples: u32,
     /// Time for which each leg that switches is low in every PWM period, second.
     #[serde(default)]
     pub minimum_low_time: f64,
@@ -236,6 +244,8 @@ pub enum SensedPhases {
     Bc,
     /// Phases c and a.
     Ca,
+    /// All three.
+    Abc,
 }
 
 impl SensedPhases {
@@ -245,12 +255,14 @@ impl SensedPhases {
             Self::Ab => &[0, 1],
             Self::Bc => &[1, 2],
             Self::Ca => &[2, 0],
+            Self::Abc => &[0, 1, 2],
         }
     }
 
-    /// What belongs to the first two sensors, of what belongs to phases a, b, c.
-    pub fn of_sensors<T: Copy>(self, of_phases: [T; 3]) -> [T; 2] {
-        [0, 1].map(|sensor| of_phases[self.phases()[sensor]])
+    /// What belongs to the first two sensors and the third phase, of what belongs to phases a, b, c.
+    pub fn of_sensors<T: Copy>(self, of_phases: [T; 3]) -> [T; 3] {
+        let [first, second] = [0, 1].map(|sensor| self.phases()[sensor]);
+        [first, second, 3 - first - second].map(|phase| of_phases[phase])
     }
 
     /// What belongs to phases a, b, c, of what belongs to the first two sensors and the third phase.
@@ -261,10 +273,15 @@ impl SensedPhases {
         all
     }
 
-    /// A sample with these counts of two sensors, and of a phase without one a count that says nothing.
-    pub fn sample(self, counts: [u16; 2], hall: u8) -> Sample {
-        let none = if self == Self::Ab { 0 } else { !counts[0] };
-        let [adc_a, adc_b, adc_c] = self.of_phases(counts, none);
+    /// A sample with these counts of the first two sensors and the third phase, which says nothing where that
+    /// has no sensor.
+    pub fn sample(self, [first, second, third]: [u16; 3], hall: u8) -> Sample {
+        let third = match self {
+            Self::Abc => third,
+            Self::Ab => 0,
+            Self::Bc | Self::Ca => !first,
+        };
+        let [adc_a, adc_b, adc_c] = self.of_phases([first, second], third);
         Sample::with_hall([adc_a, adc_b], hall).third_current(adc_c)
     }
 }
@@ -549,19 +566,52 @@ impl Inverter {
     /// # Errors
     /// When the sensors are in the low legs but a time is missing.
     pub fn largest_compare(&self) -> Result<u32, Error> {
-        let half = self.pwm_period() / 2.0;
-        let mut low = self.minimum_low_time / 2.0;
-        if self.current_sensing == CurrentSensing::LowSide {
-            self.check_sensors()?;
-            let time = |time: Option<f64>| time.unwrap_or_default();
-            let lead = time(self.sampling_lead);
-            let further = (self.sensed_phases.phases().len() - 1) as f64;
-            let behind = time(self.aperture_time) + further * time(self.conversion_time) - lead;
-            let before = self.dead_time + time(self.settling_time) + lead;
-            low = low.max(before).max(behind);
+        let [before, behind] = self.low_times()?;
+        Ok(self.counts_less(before.max(behind)))
+    }
+
+    /// Largest compare value of the highest leg, which of three sensors in the low legs need not be read at the
+    /// end of the period.
+    ///
+    /// # Errors
+    /// As [`Self::largest_compare`].
+    pub fn highest_compare(&self) -> Result<u32, Error> {
+        let [before, behind] = self.low_times()?;
+        let is_spared = self.sensed_phases == SensedPhases::Abc;
+        Ok(self.counts_less(if is_spared {
+            behind
+        } else {
+            before.max(behind)
+        }))
+    }
+
+    /// Largest compare value of a leg that is read at the end of its period.
+    ///
+    /// # Errors
+    /// As [`Self::largest_compare`].
+    pub fn read_compare(&self) -> Result<u32, Error> {
+        Ok(self.counts_less(self.low_times()?[0]))
+    }
+
+    /// How long a leg is low before the turning point and behind it, for its sensor.
+    fn low_times(&self) -> Result<[f64; 2], Error> {
+        if self.current_sensing != CurrentSensing::LowSide {
+            return Ok([0.0; 2]);
         }
+        self.check_sensors()?;
+        let time = |time: Option<f64>| time.unwrap_or_default();
+        let lead = time(self.sampling_lead);
+        let phases = self.sensed_phases.phases().len() as u32;
+        let further = f64::from(phases.div_ceil(self.current_adcs) - 1);
+        let behind = time(self.aperture_time) + further * time(self.conversion_time) - lead;
+        Ok([self.dead_time + time(self.settling_time) + lead, behind])
+    }
+
+    fn counts_less(&self, low: f64) -> u32 {
+        let low = low.max(self.minimum_low_time / 2.0);
+        let half = self.pwm_period() / 2.0;
         let counts = (low / half * f64::from(self.timer_period) - 1e-6).ceil();
-        Ok(self.timer_period.saturating_sub(counts.max(0.0) as u32))
+        self.timer_period.saturating_sub(counts.max(0.0) as u32)
     }
 
     fn check_sensors(&self) -> Result<(), Error> {
@@ -571,6 +621,13 @@ impl Inverter {
                 "inverter.adc_gain",
                 format!("{:?}, {:?}", self.adc_gain, self.adc_offset),
                 "expected one value for all sensors or one of each",
+            ));
+        }
+        if self.current_adcs == 0 {
+            return Err(Error::field(
+                "inverter.current_adcs",
+                0,
+                "expected 1 or more",
             ));
         }
         if self.pwm_per_control == 0 {

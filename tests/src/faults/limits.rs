@@ -31,6 +31,7 @@ const FAULTS: [Fault; 32] = [
             adc_inverted: !limits.adc_inverted,
             offset: limits.offset,
             offsets: limits.offsets,
+            ratio: Sensor::ALIKE,
         });
     }),
     ("offset of the second sensor one more", |limits| {
@@ -38,6 +39,7 @@ const FAULTS: [Fault; 32] = [
             adc_inverted: limits.adc_inverted,
             offset: limits.offset + 1,
             offsets: limits.offsets,
+            ratio: Sensor::ALIKE,
         });
     }),
     ("twice the calibration", |limits| {

@@ -53,17 +53,6 @@ pub fn option_of_other_controller(
     )
 }
 
-/// Current sensors of different gains.
-pub fn unlike_gains(at: &Location, gains: &str) -> Diagnostic {
-    Diagnostic::new(
-        Code::OptionUnavailable,
-        at,
-        format!(
-            "`adc_gain`: counts of {gains}, but this version needs sensors of one gain; give one value for all (signs and offsets may differ)"
-        ),
-    )
-}
-
 /// An option that this version does not have.
 pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
     Diagnostic::new(

@@ -149,16 +149,6 @@ pub fn swing_above_trip(at: &Location, max: &str, [swing, trip]: [f64; 2]) -> Di
     )
 }
 
-/// Of three current sensors two are read.
-pub fn unread_sensor(at: &Location) -> Diagnostic {
-    Diagnostic::new(
-        Code::UnreadSensor,
-        at,
-        "`sensed_phases`: of three current sensors this version reads those of phases a and b; `bc` or `ca` names another pair"
-            .to_owned(),
-    )
-}
-
 /// The commutation threshold is at least the rated current.
 pub fn threshold_above_rated(threshold: &Part, rated: &Part) -> Diagnostic {
     with_parts(
@@ -255,6 +245,19 @@ pub fn minimum_low_time(
         ),
     );
     with_parts(error, &[period])
+}
+
+/// Gains of two sensors that differ too much; ampere.
+pub fn unlike_gains(gains: &Part, [first, other]: [f64; 2]) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnlikeGains,
+        &gains.location,
+        format!(
+            "`adc_gain`: a count of one sensor is {}, of the first {}; they may differ by a factor of 2 at most: correct one, or name two phases with sensors alike in `sensed_phases`",
+            engineering(other, "A"),
+            engineering(first, "A"),
+        ),
+    )
 }
 
 /// A list of `given` values where there are so many sensed phases.

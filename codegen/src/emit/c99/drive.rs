@@ -365,6 +365,12 @@ impl Drive<'_> {
         }
         let step = self.call(2, "step", "rotor");
         body.push_str(&lines(&[&format!("const hexagen_legs legs = {step};")]));
+        let third = self.interface.limits.sensors.third;
+        if third.is_some_and(|third| third.readable.is_some()) {
+            body.push_str(&lines(&[
+                "hexagen_follow_legs(&drive->supervisor, &limits, &legs);",
+            ]));
+        }
         let _ = write!(
             signals,
             "{INDENT}if (hexagen_is_asked(&drive->signals)) {{\n\

@@ -6,7 +6,11 @@ use crate::interface::{Limits, SensedPhases, Sensor, Sensors};
 /// The runtime's macro for these limits, and its arguments with their names.
 pub(super) fn limits_of(limits: &Limits) -> (&'static str, Vec<(String, &'static str)>) {
     let mut all = arguments(limits).to_vec();
-    let Sensors { phases, second } = limits.sensors;
+    let Sensors {
+        phases,
+        second,
+        third,
+    } = limits.sensors;
     if limits.sensors == Sensors::AB {
         return ("HEXAGEN_LIMITS", all);
     }
@@ -15,23 +19,62 @@ pub(super) fn limits_of(limits: &Limits) -> (&'static str, Vec<(String, &'static
         SensedPhases::Bc => "HEXAGEN_SENSED_BC",
         SensedPhases::Ca => "HEXAGEN_SENSED_CA",
     };
-    let Sensor {
-        adc_inverted,
-        offset,
-        offsets: [least, most],
-    } = second.unwrap_or(Sensor {
+    let first = Sensor {
         adc_inverted: limits.adc_inverted,
         offset: limits.offset,
         offsets: limits.offsets,
-    });
+        ratio: Sensor::ALIKE,
+    };
+    let names = [
+        "second_inverted",
+        "second_offset",
+        "second_least",
+        "second_most",
+        "second_ratio",
+    ];
+    all.push((phases.to_owned(), "sensed"));
+    all.extend(sensor(second.unwrap_or(first), names));
+    let Some(third) = third else {
+        return ("HEXAGEN_LIMITS_OF", all);
+    };
+    let names = [
+        "third_inverted",
+        "third_offset",
+        "third_least",
+        "third_most",
+        "third_ratio",
+    ];
+    all.extend(sensor(third.sensor, names));
     all.extend([
-        (phases.to_owned(), "sensed"),
-        (format!("{adc_inverted}"), "second_inverted"),
-        (format!("{offset}"), "second_offset"),
-        (format!("{least}"), "second_least"),
-        (format!("{most}"), "second_most"),
+        ("true".to_owned(), "has_third"),
+        (format!("{}", third.readable.is_some()), "is_low_side"),
+        (format!("{}", third.readable.unwrap_or(0)), "readable"),
+        (format!("{}", third.is_delayed), "is_delayed"),
+        (typed_number(third.sum_tolerance), "sum_tolerance"),
+        (format!("{}", third.sum_samples), "sum_samples"),
     ]);
-    ("HEXAGEN_LIMITS_OF", all)
+    ("HEXAGEN_LIMITS_OF_THREE", all)
+}
+
+/// A sensor's arguments with these names.
+fn sensor(
+    sensor: Sensor,
+    names: [&'static str; 5],
+) -> impl Iterator<Item = (String, &'static str)> {
+    let [least, most] = sensor.offsets;
+    let ratio = if sensor.ratio == Sensor::ALIKE {
+        "HEXAGEN_ALIKE".to_owned()
+    } else {
+        typed_number(sensor.ratio)
+    };
+    let values = [
+        format!("{}", sensor.adc_inverted),
+        format!("{}", sensor.offset),
+        format!("{least}"),
+        format!("{most}"),
+        ratio,
+    ];
+    values.into_iter().zip(names)
 }
 
 /// The limits with their names, in the order of the runtime's macro.

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 19] = [
+const SHARED: [&str; 20] = [
     "Checked",
     "Control",
     "FixedBus",
@@ -26,6 +26,7 @@ const SHARED: [&str; 19] = [
     "SensedPhases",
     "Sensor",
     "Sensors",
+    "ThirdSensor",
     "SpeedLoop",
     "ToldBus",
     "Unit",

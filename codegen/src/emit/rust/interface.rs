@@ -6,7 +6,7 @@ use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, st
 use super::source::{Source, quote};
 use crate::interface::{
     FormatEntry, Interface, Limits, PublicConstant, PublicValue, ResidualWatch, Rounding,
-    SensedPhases, Sensor, Sensors, Unit,
+    SensedPhases, Sensor, Sensors, ThirdSensor, Unit,
 };
 use crate::ir::{Demand, Program, Setter};
 
@@ -237,29 +237,62 @@ fn sensors_of(sensors: Sensors) -> Source {
         SensedPhases::Bc => quote!(Bc),
         SensedPhases::Ca => quote!(Ca),
     };
-    let second = match sensors.second {
-        None => quote!(None),
-        Some(Sensor {
-            adc_inverted,
-            offset,
-            offsets,
-        }) => {
-            let inverted = Source::of(adc_inverted.to_string());
-            let offset = number(offset.into());
-            let [least, most] = offsets.map(|offset| number(offset.into()));
-            quote! {
-                Some(Sensor {
-                    adc_inverted: #inverted,
-                    offset: #offset,
-                    offsets: [#least, #most],
-                })
-            }
-        }
-    };
+    let second = optional(sensors.second, sensor_of);
+    let third = optional(sensors.third, third_of);
     quote! {
         Sensors {
             phases: SensedPhases::#phases,
             second: #second,
+            third: #third,
+        }
+    }
+}
+
+fn optional<T>(value: Option<T>, source: impl FnOnce(T) -> Source) -> Source {
+    match value.map(source) {
+        None => quote!(None),
+        Some(value) => quote!(Some(#value)),
+    }
+}
+
+fn sensor_of(sensor: Sensor) -> Source {
+    let Sensor {
+        adc_inverted,
+        offset,
+        offsets,
+        ratio,
+    } = sensor;
+    let inverted = Source::of(adc_inverted.to_string());
+    let offset = number(offset.into());
+    let [least, most] = offsets.map(|offset| number(offset.into()));
+    let ratio = if ratio == Sensor::ALIKE {
+        quote!(Sensor::ALIKE)
+    } else {
+        number(ratio.into())
+    };
+    quote! {
+        Sensor {
+            adc_inverted: #inverted,
+            offset: #offset,
+            offsets: [#least, #most],
+            ratio: #ratio,
+        }
+    }
+}
+
+fn third_of(third: ThirdSensor) -> Source {
+    let sensor = sensor_of(third.sensor);
+    let readable = optional(third.readable, |top| number(top.into()));
+    let is_delayed = Source::of(third.is_delayed.to_string());
+    let tolerance = number(third.sum_tolerance.into());
+    let samples = number(third.sum_samples.into());
+    quote! {
+        ThirdSensor {
+            sensor: #sensor,
+            readable: #readable,
+            is_delayed: #is_delayed,
+            sum_tolerance: #tolerance,
+            sum_samples: #samples,
         }
     }
 }

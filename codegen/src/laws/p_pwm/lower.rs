@@ -46,6 +46,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
             lifts: common_mode.lifts(front.bus),
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
+        let limited = common_mode.second_readable(l, front.third, front.bus, limited);
         let modulator = Modulator {
             bus: front.bus,
             shifts: None,

@@ -50,6 +50,7 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             lifts: !pair && common_mode.lifts(front.bus),
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
+        let limited = common_mode.second_readable(l, front.third, front.bus, limited);
         let modulator = Modulator {
             bus: front.bus,
             shifts,

@@ -126,6 +126,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
             lifts: common_mode.lifts(front.bus),
         };
         let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
+        let limited = common_mode.second_readable(l, front.third, front.bus, limited);
         l.b.stage("integrate", INTEGRATION);
         let target = front.e.map_or(limited.u, |e| limited.u - e);
         named! {

@@ -2,11 +2,12 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
+use super::sensing::Sensing;
 use super::{currents, relations};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::reader::Reader;
-use crate::spec::{ControllerSpec, HallCapture, InverterSpec};
+use crate::spec::{ControllerSpec, CurrentSum, HallCapture, InverterSpec, SensedPhases};
 use std::f64::consts::FRAC_PI_3;
 
 /// Default `minimum_speed` over `rated_speed`, and the most that it becomes for a fast Hall timer.
@@ -80,6 +81,7 @@ pub(super) fn inverter(
         other_sensors: others.to_vec(),
         sensed_phases: inverter.sensing.phases,
         current_sensing: inverter.sensing.place?,
+        current_sum: current_sum(&inverter.sensing, (trip_current, adc.gain)),
         minimum_low_time: inverter.sensing.minimum_low_time,
         offset_tolerance: adc.offset_tolerance,
         trip_current,
@@ -95,6 +97,24 @@ pub(super) fn inverter(
         hall_glitches: hall_glitches(reader, inverter, motor, (t_s, maximum_speed), errors),
         calibration_log2: inverter.calibration_log2,
         precharge_periods: finish_precharge(reader, inverter, t_s, errors),
+    })
+}
+
+/// Default tolerance of a sum of three currents, over the trip level: the gains of two sensors may differ by a few
+/// percent, and their conversions by an instant.
+const SUM_TOLERANCE: f64 = 0.1;
+
+/// Default of the samples in a row with a larger sum that are a fault.
+const SUM_SAMPLES: u32 = 20;
+
+/// When three currents do not add up.
+fn current_sum(sensing: &Sensing, (trip_current, gain): (f64, f64)) -> Option<CurrentSum> {
+    let samples = sensing.sum_samples.unwrap_or(SUM_SAMPLES);
+    let default = (SUM_TOLERANCE * trip_current / gain).ceil() * gain;
+    let is_watched = sensing.phases == SensedPhases::Abc && samples > 0;
+    is_watched.then_some(CurrentSum {
+        tolerance: sensing.sum_tolerance.unwrap_or(default),
+        samples,
     })
 }
 

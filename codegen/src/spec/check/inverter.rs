@@ -83,7 +83,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         t_s,
         timer_period,
         dead_time: reader.plain_quantity(errors, "dead_time"),
-        adc: read_adc(reader, sensing.stated, errors),
+        adc: read_adc(reader, sensing.phases, errors),
         sensing,
         trip_current: reader.plain_quantity(errors, "trip_current"),
         max_current: reader.plain_quantity(errors, "max_current"),
@@ -344,6 +344,14 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
     }
     let inverted = inverted?.unwrap_or_else(|| vec![0; count]);
     let (gains, part) = gains?;
+    let gain = *gains.first()?;
+    if let Some(other) = gains
+        .iter()
+        .find(|other| !(0.5..=2.0).contains(&(**other / gain)))
+    {
+        errors.push(catalogue::unlike_gains(&part, [gain, *other]));
+        return None;
+    }
     let signs = inverted.iter().map(|on| if *on == 1 { -1.0 } else { 1.0 });
     let sensors: Vec<CurrentSensor> = gains
         .iter()
@@ -353,13 +361,11 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
             gain: sign * gain,
             offset: *offset,
         })
-        .take(2)
         .collect();
     let reaches = gains.iter().zip(&offsets);
     let reach = reaches
         .map(|(gain, offset)| gain * f64::from((*offset).min(full - offset)))
         .fold(f64::INFINITY, f64::min);
-    let gain = *gains.first()?;
     let offset_tolerance = read_offset_tolerance(reader, gain, full, errors)?;
     Some(Adc {
         bits: bits?,

@@ -19,7 +19,7 @@ pub use origins::{Origin, Origins};
 
 use super::reader::Reader;
 use super::{Spec, SpecAst, schema};
-use crate::diagnostics::{Collector, Diagnostic, Diagnostics, catalogue};
+use crate::diagnostics::{Collector, Diagnostics, catalogue};
 
 /// Checks a specification and fills in every default.
 ///
@@ -46,8 +46,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let (controller, capture) =
         controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
 
-    let unread = sensing::unread(&inverter_reader, &inverter.sensing);
-    let mut warnings: Vec<Diagnostic> = unread.into_iter().collect();
+    let mut warnings = vec![];
     let contradicts =
         consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
     relations::check_period(&motor_reader, &motor, &inverter, &mut errors);

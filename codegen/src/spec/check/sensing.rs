@@ -1,7 +1,7 @@
 //! The current sensors: where they are, and what a count of each is worth.
 
+use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
-use crate::diagnostics::{Collector, Diagnostic};
 use crate::spec::reader::Reader;
 use crate::spec::sensing::SensingTimes;
 use crate::spec::{CurrentSensing, SensedPhases};
@@ -10,9 +10,10 @@ use crate::spec::{CurrentSensing, SensedPhases};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sensing {
     /// The phases that have a sensor.
-    pub stated: SensedPhases,
-    /// Those whose sensors are read: two of them.
     pub phases: SensedPhases,
+    /// When the currents of three sensors do not add up; None for what is as by default.
+    pub sum_tolerance: Option<f64>,
+    pub sum_samples: Option<u32>,
     /// None together with an error.
     pub place: Option<CurrentSensing>,
     /// Second.
@@ -29,17 +30,31 @@ impl Sensing {
 const SENSED_PHASES: &str = "sensed_phases";
 
 pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
-    let stated = reader
+    let phases = reader
         .choice(errors, SENSED_PHASES, &[])
         .unwrap_or(SensedPhases::Ab);
+    if phases != SensedPhases::Abc {
+        let names = ["current_sum_tolerance", "current_sum_samples"];
+        refuse(reader, &names, "sensed_phases: abc", errors);
+    }
     Sensing {
-        stated,
-        phases: match stated {
-            SensedPhases::Abc => SensedPhases::Ab,
-            two => two,
-        },
+        phases,
+        sum_tolerance: reader
+            .plain_quantity(errors, "current_sum_tolerance")
+            .map(|given| given.si),
+        sum_samples: reader.integer(errors, "current_sum_samples"),
         place: read_place(reader, errors),
         minimum_low_time: time(reader, errors, "minimum_low_time").unwrap_or(0.0),
+    }
+}
+
+/// Refuses fields that have an effect only with another setting.
+fn refuse(reader: &Reader, names: &[&'static str], setting: &str, errors: &mut Collector) {
+    for name in names {
+        if let Some(field) = reader.field(name) {
+            let (at, given) = (&field.location, field.value.to_string());
+            errors.push(catalogue::needless_field(at, name, &given, setting));
+        }
     }
 }
 
@@ -62,18 +77,20 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
         "sampling_lead",
     ]
     .map(|name| time(reader, errors, name));
+    let converters = reader.integer(errors, "current_adcs");
     let is_low = reader
         .word(errors, FIELD, &[("in_phase", false), ("low_side", true)])
         .or_else(|| reader.field(FIELD).is_none().then_some(false))?;
     if !is_low {
-        let names = NEEDED.map(|(name, _)| name);
-        for name in names.into_iter().chain(["sampling_lead"]) {
-            if let Some(field) = reader.field(name) {
-                let (at, given) = (&field.location, field.value.to_string());
-                let setting = "current_sensing: low_side";
-                errors.push(catalogue::needless_field(at, name, &given, setting));
-            }
-        }
+        let [settling, aperture, conversion] = NEEDED.map(|(name, _)| name);
+        let names = [
+            settling,
+            aperture,
+            conversion,
+            "current_adcs",
+            "sampling_lead",
+        ];
+        refuse(reader, &names, "current_sensing: low_side", errors);
         return Some(CurrentSensing::InPhase);
     }
     for (name, example) in NEEDED {
@@ -89,14 +106,9 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
         settling: settling?,
         aperture: aperture?,
         conversion: conversion?,
+        converters: converters.unwrap_or(1),
         lead: lead.unwrap_or(0.0),
     }))
-}
-
-/// The warning that a sensor is not read, if one is not.
-pub(super) fn unread(reader: &Reader, sensing: &Sensing) -> Option<Diagnostic> {
-    let field = reader.field(SENSED_PHASES)?;
-    (sensing.phases != sensing.stated).then(|| catalogue::unread_sensor(&field.location))
 }
 
 /// Values of a field that may hold one of each sensed phase: one for all, or as many as there are phases.

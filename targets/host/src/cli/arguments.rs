@@ -141,18 +141,18 @@ pub struct PlantArguments {
     /// Range of the current ADCs, in the plant and in the controller's specification
     #[arg(long, value_name = "CURRENT", value_parser = quantity::current_text, allow_hyphen_values = true)]
     pub adc_range: Option<String>,
-    /// Offset error of the current ADCs, unknown to the controller: one current for both phases, or
-    /// two for a and b
+    /// Offset error of the current ADCs, unknown to the controller: one current for all sensed
+    /// phases, or one of each
     #[arg(long, value_name = "CURRENT", value_parser = quantity::adc_offset, allow_hyphen_values = true)]
-    pub adc_offset: Option<[f64; 2]>,
-    /// True over stated current per ADC count, unknown to the controller: one factor for both
-    /// sensed phases, or two
+    pub adc_offset: Option<[f64; 3]>,
+    /// True over stated current per ADC count, unknown to the controller: one factor for all
+    /// sensed phases, or one of each
     #[arg(long, value_name = "X", value_parser = quantity::adc_scale, allow_hyphen_values = true)]
-    pub scale_adc: Option<[f64; 2]>,
+    pub scale_adc: Option<[f64; 3]>,
     /// Gaussian noise of the current ADCs in counts rms, the same in every run
     #[arg(long, value_name = "COUNTS", value_parser = quantity::counts, allow_hyphen_values = true)]
     pub adc_noise: Option<f64>,
-    /// Time from the sample of the first sensed phase to that of the second [default: the motor
+    /// Time from the sample of a sensed phase to that of the next [default: the motor
     /// file's, 0 with sensors in the phases]
     #[arg(long, value_name = "TIME", value_parser = quantity::time, allow_hyphen_values = true)]
     pub conversion_time: Option<f64>,

@@ -76,26 +76,28 @@ pub(super) fn current_text(text: &str) -> Result<String, String> {
     quantity(text, Dimension::Current).map(|amperes| format!("{amperes} A"))
 }
 
-/// Amperes of one channel or of two, `0.2A` or `0.2A,-0.1A`.
-pub(super) fn adc_offset(text: &str) -> Result<[f64; 2], String> {
-    per_channel(text, |part| quantity(part, Dimension::Current))
+/// Amperes of all channels or of each, `0.2A` or `0.2A,-0.1A`.
+pub(super) fn adc_offset(text: &str) -> Result<[f64; 3], String> {
+    per_channel(text, 0.0, |part| quantity(part, Dimension::Current))
 }
 
-/// Factors of one channel or of two, `1.01` or `1.01,0.99`.
-pub(super) fn adc_scale(text: &str) -> Result<[f64; 2], String> {
-    per_channel(text, factor)
+/// Factors of all channels or of each, `1.01` or `1.01,0.99`.
+pub(super) fn adc_scale(text: &str) -> Result<[f64; 3], String> {
+    per_channel(text, 1.0, factor)
 }
 
-/// A value for both current channels, or one for each.
+/// A value for all current channels, or one for each; a third that is not given is `sound`.
 fn per_channel(
     text: &str,
+    sound: f64,
     parse: impl Fn(&str) -> Result<f64, String>,
-) -> Result<[f64; 2], String> {
+) -> Result<[f64; 3], String> {
     let list = text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?;
     match list[..] {
-        [both] => Ok([both; 2]),
-        [first, second] => Ok([first, second]),
-        _ => Err("give one value for both sensed phases, or two".to_owned()),
+        [all] => Ok([all; 3]),
+        [first, second] => Ok([first, second, sound]),
+        [first, second, third] => Ok([first, second, third]),
+        _ => Err("give one value for all sensed phases, or one of each".to_owned()),
     }
 }
 
@@ -165,8 +167,9 @@ mod tests {
         assert_eq!(radians("180deg"), Ok(std::f64::consts::PI));
         assert_eq!(hall_error("5deg"), Ok([5.0; 3]));
         assert_eq!(hall_error("5deg,-3,0"), Ok([5.0, -3.0, 0.0]));
-        assert_eq!(adc_offset("200mA"), Ok([0.2; 2]));
-        assert_eq!(adc_offset("0.2A,-1"), Ok([0.2, -1.0]));
+        assert_eq!(adc_offset("200mA"), Ok([0.2; 3]));
+        assert_eq!(adc_offset("0.2A,-1"), Ok([0.2, -1.0, 0.0]));
+        assert_eq!(adc_scale("1.1,0.9,1.2"), Ok([1.1, 0.9, 1.2]));
         assert_eq!(adc_scale("1.01,0.99"), Ok([1.01, 0.99]));
         assert_eq!(counts("1.5 counts"), Ok(1.5));
     }
@@ -190,7 +193,7 @@ mod tests {
             torque("-1e300"),
             Err("-1e300 is out of range: at most 100000 Nm".to_owned())
         );
-        assert!(hall_error("1,2").is_err() && adc_offset("1,2,3").is_err());
+        assert!(hall_error("1,2").is_err() && adc_offset("1,2,3,4").is_err());
         assert!(adc_scale("1,200").is_err() && counts("1 A").is_err());
         assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
     }

@@ -173,8 +173,8 @@ fn options_out_of_range_or_at_odds_are_told() {
             "is a voltage",
         ),
         (
-            &["simulate", PAPER, "--rpm", "1", "--adc-offset", "1,2,3"],
-            "one value for both sensed phases, or two",
+            &["simulate", PAPER, "--rpm", "1", "--adc-offset", "1,2,3,4"],
+            "one value for all sensed phases, or one of each",
         ),
         (
             &["simulate", PAPER, "--rpm", "1", "--scale-adc", "1,0"],

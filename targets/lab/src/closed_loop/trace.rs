@@ -103,8 +103,11 @@ impl Trace {
     pub fn new(plant: &crate::plant::Plant, periods: usize) -> Self {
         let params = plant.params();
         let t_s = params.t_s;
-        let counts = params.adc.map(|channel| channel.amperes_per_count.abs());
-        let current_floor = counts[0].max(counts[1]);
+        let counts = params
+            .adc
+            .iter()
+            .map(|channel| channel.amperes_per_count.abs());
+        let current_floor = counts.fold(0.0, f64::max);
         let k_phase = params.k_phase.into_iter().fold(0.0, f64::max);
         let bins_per_period = ((t_s / BIN).round() as usize).max(1);
         let bins = periods * bins_per_period;

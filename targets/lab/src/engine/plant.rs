@@ -25,14 +25,18 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         timer_period: inverter.timer_period as u16,
         dead_time: inverter.dead_time,
         diode_drop: 0.0,
-        adc: [0, 1].map(|place| AdcChannel {
-            bits: inverter.adc_bits,
-            amperes_per_count: sensors[place].gain,
-            offset: f64::from(sensors[place].offset),
-            noise: 0.0,
-            instant: times.map_or(0.0, |times| place as f64 * times.conversion - times.lead),
-        }),
-        sensed: [0, 1].map(|place| inverter.sensed_phases.phases()[place]),
+        adc: (sensors.iter().zip(0..))
+            .map(|(sensor, place)| AdcChannel {
+                bits: inverter.adc_bits,
+                amperes_per_count: sensor.gain,
+                offset: f64::from(sensor.offset),
+                noise: 0.0,
+                instant: times.map_or(0.0, |times| {
+                    f64::from(place / times.converters) * times.conversion - times.lead
+                }),
+            })
+            .collect(),
+        sensed: inverter.sensed_phases.phases().to_vec(),
         low_side: times.map(|times| LowSide {
             settling: times.settling,
             aperture: times.aperture,

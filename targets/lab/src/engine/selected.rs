@@ -22,9 +22,9 @@ pub struct PlantOptions {
     /// Range of the current ADCs with its unit, of plant and controller: the specification changes.
     pub adc_range: Option<String>,
     /// Zero error of the current ADCs in amperes, unknown to the controller.
-    pub adc_offset: Option<[f64; 2]>,
+    pub adc_offset: Option<[f64; 3]>,
     /// True over stated current per ADC count, in the order of the sensed phases.
-    pub scale_adc: Option<[f64; 2]>,
+    pub scale_adc: Option<[f64; 3]>,
     /// Noise of the current ADCs in counts rms.
     pub adc_noise: Option<f64>,
     /// Time in seconds from the first current's sample to the second's.
@@ -189,16 +189,19 @@ impl PlantOptions {
         for (channel, error) in plant
             .adc
             .iter_mut()
-            .zip(self.adc_offset.unwrap_or([0.0; 2]))
+            .zip(self.adc_offset.unwrap_or([0.0; 3]))
         {
             channel.offset += error / channel.amperes_per_count;
         }
-        plant.scale_adc(self.scale_adc.unwrap_or([1.0; 2]));
+        plant.scale_adc(self.scale_adc.unwrap_or([1.0; 3]));
         for channel in &mut plant.adc {
             channel.noise = self.adc_noise.unwrap_or(channel.noise);
         }
         if let Some(time) = self.conversion_time {
-            plant.adc[1].instant = plant.adc[0].instant + time;
+            let first = plant.adc[0].instant;
+            for (channel, place) in plant.adc.iter_mut().zip(0_u8..) {
+                channel.instant = first + f64::from(place) * time;
+            }
         }
         plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
         plant.mechanics = self.inertia.map(|inertia| Mechanics {

@@ -84,7 +84,7 @@ const DISPLACED: f64 = 15.0;
 const PLACED: f64 = 5.0;
 
 /// True over stated current per ADC count of a sound drive's two channels.
-const APART: [f64; 2] = [1.01, 0.99];
+const APART: [f64; 3] = [1.01, 0.99, 1.0];
 
 /// Dead time beyond what the specification of a sound drive states, second.
 const UNSTATED: f64 = 1e-6;

@@ -65,7 +65,7 @@ pub enum PlantDefect {
         more: f64,
     },
     /// True over stated current per ADC count of the two channels.
-    AdcScale([f64; 2]),
+    AdcScale([f64; 3]),
     /// Noise of the current ADCs.
     AdcNoise {
         /// Counts rms.

@@ -30,7 +30,7 @@ impl Signals {
     /// Sound signals of a plant; `seed` distinguishes the noise of runs.
     pub(super) fn new(plant: &PlantParams, seed: u64) -> Self {
         let mut offsets = [0.0; 3];
-        for (channel, phase) in plant.adc.iter().zip(plant.sensed) {
+        for (channel, phase) in plant.adc.iter().zip(plant.sensed.iter().copied()) {
             offsets[phase] = channel.offset;
         }
         Self {

@@ -4,6 +4,7 @@ use super::adc::full_scale;
 use super::hall::EVEN_EDGES_DEG;
 use super::{AdcChannel, EmfShape, Mechanics, PlantError, PlantParams, Short, Wiring};
 use hexagen_codegen::diagnostics::engineering;
+use std::collections::BTreeSet;
 
 /// What a check found.
 type Checked = Result<(), PlantError>;
@@ -87,8 +88,8 @@ impl PlantParams {
     fn check_channels(&self) -> Checked {
         let period = self.pwm_period();
         let mut earliest = -period / 2.0;
-        for channel in self.adc {
-            check_channel(&channel)?;
+        for channel in &self.adc {
+            check_channel(channel)?;
             let ok = (earliest..period / 2.0).contains(&channel.instant);
             let limit = format!(
                 "from {} to below half the period of {}",
@@ -98,10 +99,12 @@ impl PlantParams {
             require(ok, "adc instant", (channel.instant, "s"), &limit)?;
             earliest = channel.instant;
         }
-        let [first, second] = self.sensed;
-        let ok = first < 3 && second < 3 && first != second;
-        let value = (second as f64, "");
-        require(ok, "sensed", value, "two different phases, 0 to 2")
+        let phases: BTreeSet<usize> = self.sensed.iter().copied().collect();
+        let is_each_once = phases.len() == self.sensed.len() && phases.iter().all(|x| *x < 3);
+        let ok = is_each_once && phases.len() >= 2 && phases.len() == self.adc.len();
+        let value = (self.sensed.last().map_or(0.0, |x| *x as f64), "");
+        let limit = "two or three different phases, 0 to 2, one of each channel";
+        require(ok, "sensed", value, limit)
     }
 
     fn check_wiring(&self) -> Checked {

@@ -80,7 +80,7 @@ pub struct Plant {
     mean_voltages: [f64; 3],
     mean_torque: f64,
     /// The sensed legs at those channels' instants that come before the next period.
-    early: [LegNow; 2],
+    early: [LegNow; 3],
     noise: fastrand::Rng,
     blind: u64,
 }
@@ -136,7 +136,7 @@ impl Plant {
             currents: [0.0; 3],
             mean_voltages: [0.0; 3],
             mean_torque: 0.0,
-            early: [LegNow::default(); 2],
+            early: [LegNow::default(); 3],
             noise: fastrand::Rng::with_seed(NOISE_SEED),
             blind: 0,
             params,
@@ -217,20 +217,25 @@ impl Plant {
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
         let mut counts = [0; 3];
-        for place in 0..2 {
-            let current = self.read(place, next);
+        let mut blind = 0_u64;
+        for place in 0..self.params.adc.len() {
+            let (current, is_seen) = self.read(place, next);
+            blind += u64::from(!is_seen);
             let channel = &self.params.adc[place];
             counts[self.params.sensed[place]] = adc::convert(channel, current, &mut self.noise);
         }
+        // Of three sensors two are enough.
+        let spared = self.params.adc.len() as u64 - 2;
+        self.blind += blind.saturating_sub(spared);
         let [adc_a, adc_b, adc_c] = counts;
         Sample::with_hall([adc_a, adc_b], self.sensors.code(self.theta_e))
             .third_current(adc_c)
             .hall_ticks(ticks.clamp(0.0, f64::from(u16::MAX)) as u16)
     }
 
-    /// What a channel's sensor shows of its phase's current; counts a sample that is none of the
-    /// current, or that the next command cuts short.
-    fn read(&mut self, place: usize, next: Legs) -> f64 {
+    /// What a channel's sensor shows of its phase's current, and whether that is the current, not cut
+    /// short by the next command.
+    fn read(&mut self, place: usize, next: Legs) -> (f64, bool) {
         let (instant, phase) = (self.params.adc[place].instant, self.params.sensed[place]);
         let leg = if instant < 0.0 {
             self.early[place]
@@ -243,14 +248,13 @@ impl Plant {
             self.leg(phase, 0.0)
         };
         let Some(low_side) = self.params.low_side else {
-            return leg.current;
+            return (leg.current, true);
         };
         let seen = adc::seen(low_side, leg.gate, leg.held_for, leg.current);
         let until = instant + low_side.aperture;
         let timing = (self.params.timer_period, self.params.pwm_period());
         let is_held = adc::is_held(until, next, phase, timing);
-        self.blind += u64::from(seen != leg.current || !is_held);
-        seen
+        (seen, seen == leg.current && is_held)
     }
 
     /// A leg `t` seconds into the period.
@@ -264,7 +268,8 @@ impl Plant {
         }
     }
 
-    /// Samples so far, each sensor's by itself, that did not show the current, or that the next command cut short.
+    /// Samples so far, each sensor's by itself, that did not show the current, or that the next command cut short; of
+    /// three sensors that sample at once one may, as the other two show its current.
     pub fn blind_samples(&self) -> u64 {
         self.blind
     }
@@ -275,7 +280,7 @@ impl Plant {
         let mut integrals = Integrals::default();
         let mut t = 0.0;
         self.begin(command);
-        for place in 0..2 {
+        for place in 0..self.params.adc.len() {
             let instant = t_s + self.params.adc[place].instant;
             if instant < t_s {
                 self.advance((t, instant), &mut integrals, observer);

@@ -135,11 +135,11 @@ pub struct PlantParams {
     pub dead_time: f64,
     /// Forward drop of the freewheel diodes in volts; 0 for ideal diodes. Switches are ideal.
     pub diode_drop: f64,
-    /// Current channels.
-    pub adc: [AdcChannel; 2],
+    /// Current channels, two or three.
+    pub adc: Vec<AdcChannel>,
     /// Their phases, 0 to 2 for a to c.
     #[serde(default = "a_and_b")]
-    pub sensed: [usize; 2],
+    pub sensed: Vec<usize>,
     /// Whether the sensors are in the low legs; else they are in the phases.
     #[serde(default)]
     pub low_side: Option<LowSide>,
@@ -188,8 +188,8 @@ fn even_edges() -> [f64; 6] {
 }
 
 /// The phases of current channels that no file names.
-fn a_and_b() -> [usize; 2] {
-    [0, 1]
+fn a_and_b() -> Vec<usize> {
+    vec![0, 1]
 }
 
 impl PlantParams {
@@ -216,7 +216,7 @@ impl PlantParams {
             timer_period: 1800,
             dead_time: 0.0,
             diode_drop: 0.0,
-            adc: [AdcChannel::bipolar(12, 40.0); 2],
+            adc: vec![AdcChannel::bipolar(12, 40.0); 2],
             sensed: a_and_b(),
             low_side: None,
             hall_ticks_per_period: 1800.0,
@@ -237,8 +237,8 @@ impl PlantParams {
         self
     }
 
-    /// Scales the true current per ADC count of both channels, unknown to the controller.
-    pub fn scale_adc(&mut self, scales: [f64; 2]) {
+    /// Scales the true current per ADC count of all channels, unknown to the controller.
+    pub fn scale_adc(&mut self, scales: [f64; 3]) {
         for (channel, scale) in self.adc.iter_mut().zip(scales) {
             channel.amperes_per_count *= scale;
         }

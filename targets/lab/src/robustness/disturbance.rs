@@ -31,7 +31,7 @@ const ADC_BITS: [u32; 2] = [10, 12];
 const ADC_OFFSET: f64 = 0.005;
 
 /// True over stated current per ADC count of the two channels.
-const ADC_SCALE: [f64; 2] = [1.01, 0.99];
+const ADC_SCALE: [f64; 3] = [1.01, 0.99, 1.0];
 
 /// Noise of the current ADCs in counts rms.
 const ADC_NOISE: f64 = 1.0;
@@ -86,12 +86,12 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
         let name = format!("{bits}-bit ADC, {} off", engineering(offset, "A"));
         add(&name, &|plant| {
             plant.adc_bits = Some(bits);
-            let known = plant.adc_offset.unwrap_or([0.0; 2]);
+            let known = plant.adc_offset.unwrap_or([0.0; 3]);
             plant.adc_offset = Some(known.map(|known| known + offset));
         });
     }
     add("current sensors 2 % apart", &|plant| {
-        let known = plant.scale_adc.unwrap_or([1.0; 2]);
+        let known = plant.scale_adc.unwrap_or([1.0; 3]);
         plant.scale_adc = Some(std::array::from_fn(|x| known[x] * ADC_SCALE[x]));
     });
     add("ADC noise 1 count rms", &|plant| {

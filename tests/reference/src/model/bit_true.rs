@@ -25,11 +25,12 @@ mod tables;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{BusWatch, Limits, Mode, Observation, Period, Stop};
+use super::supervision::{BusWatch, Limits, Mode, Observation, Period, Stop, Units};
 use super::trace::Reach;
 use super::variant::{Variant, reference_gain};
 use crate::exact::{
-    Coefficient, Word, both, floor, floor_weighted, input, lesser, pow2, within, word,
+    Coefficient, Shift, Word, all_three, both, floor, floor_weighted, input, lesser, pow2, within,
+    word,
 };
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use bus_current::BusCurrent;
@@ -42,6 +43,9 @@ use residual::ResidualWatch;
 use slew::Slew;
 use speed::Regulator;
 use state::State;
+
+/// Fraction bits of the ratio of two sensors' gains.
+const RATIO_BITS: i32 = 15;
 
 /// The bit-true controller of one drive, over any words.
 #[derive(Clone, Debug)]
@@ -123,7 +127,15 @@ impl<W: Word> BitTrue<W> {
             variant: scale.variant,
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
-            limits: Limits::new(spec, k.i_trip, k.count)?,
+            limits: Limits::new(
+                spec,
+                Units {
+                    i_trip: k.i_trip,
+                    count: k.count,
+                    ampere: k.count / spec.inverter.adc_gain.first().abs(),
+                    ratio_bits: Some(RATIO_BITS),
+                },
+            )?,
             j: speed.as_ref().map_or(word(0.0), |speed| speed.top),
             speed_ref: word(0.0),
             speed,
@@ -197,10 +209,12 @@ impl<W: Word> BitTrue<W> {
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
             self.clear();
+            let unread = self.state.supervisor.unread;
             self.state = State {
                 offset: self.state.offset,
                 ..State::default()
             };
+            self.state.supervisor.unread = unread;
             self.state.supervisor.start(&self.limits);
         }
     }
@@ -312,11 +326,17 @@ impl<W: Word> BitTrue<W> {
         let k = &self.k;
         // 1 measure
         let limits = &self.limits;
-        let adc: [W; 2] = limits.sensed.of_sensors(sample.adc()).map(input);
-        let counted = |x: usize| {
-            (lesser(adc[x], limits.adc_max) * k.count - self.state.offset[x]) * limits.polarity[x]
-        };
-        let measured = limits.phases([counted(0), counted(1)]);
+        let adc: [W; 3] = limits.sensed.of_sensors(sample.adc()).map(input);
+        let shown = all_three(|x: usize| {
+            let counts = lesser(adc[x], limits.adc_max) * k.count - self.state.offset[x];
+            let current = counts * limits.polarity[x];
+            if limits.ratio[x] == 1.0 {
+                return current;
+            }
+            let ratio = word(limits.ratio[x] * pow2(RATIO_BITS));
+            Shift::new(RATIO_BITS as u32).round_product(ratio, current)
+        });
+        let measured = limits.phases(shown, self.state.supervisor.unread(limits));
         let i = limits.for_law(measured);
         let i_c = -(i[0] + i[1]);
 
@@ -328,6 +348,7 @@ impl<W: Word> BitTrue<W> {
         let seen = Observation {
             adc,
             i: measured,
+            sum: shown[0] + shown[1] + shown[2],
             hall,
             demand: match self.speed {
                 Some(_) => self.speed_ref != 0.0,
@@ -490,6 +511,9 @@ impl<W: Word> BitTrue<W> {
             Period::Low => Command::idle(Legs::LOW),
             Period::Off => Command::idle(Legs::OFF),
         };
+        self.state
+            .supervisor
+            .follow_legs(&self.limits, command.legs);
 
         // 12 remember
         if run {

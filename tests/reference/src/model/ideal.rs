@@ -11,7 +11,7 @@ mod vector;
 
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
-use super::supervision::{BusWatch, Limits, Observation, Period, Stop};
+use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Trace};
 use super::variant::{Variant, allowed_residual, emf_error_limit};
 use crate::emf_motion::EmfMotion;
@@ -119,7 +119,15 @@ impl Ideal {
         // A current of exactly the trip level is not above it, whatever these floating-point
         // numbers lose.
         let trip_current = inverter.trip_current + 1e-6 * gain;
-        let limits = Limits::new(spec, trip_current, gain)?;
+        let limits = Limits::new(
+            spec,
+            Units {
+                i_trip: trip_current,
+                count: gain,
+                ampere: 1.0,
+                ratio_bits: None,
+            },
+        )?;
         let pole_pairs = f64::from(motor.pole_pairs);
         let mut ideal = Self {
             variant: Variant::new(spec),
@@ -206,10 +214,12 @@ impl Ideal {
     pub fn reset(&mut self) {
         if self.state.supervisor.may_reset() {
             self.clear();
+            let unread = self.state.supervisor.unread;
             self.state = PhysicalState {
                 offset: self.state.offset,
                 ..PhysicalState::default()
             };
+            self.state.supervisor.unread = unread;
             self.state.supervisor.start(&self.limits);
         }
     }
@@ -272,10 +282,11 @@ impl Ideal {
         // 1 measure
         let limits = &self.limits;
         let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);
-        let sensed = [0, 1].map(|x| {
-            (adc[x].min(limits.adc_max) - self.state.offset[x]) * limits.polarity[x] * self.gain
+        let shown = [0, 1, 2].map(|x| {
+            let counts = adc[x].min(limits.adc_max) - self.state.offset[x];
+            counts * limits.polarity[x] * limits.ratio[x] * self.gain
         });
-        let measured = limits.phases(sensed);
+        let measured = limits.phases(shown, self.state.supervisor.unread(limits));
         let [i_a, i_b] = limits.for_law(measured);
         let i_abc = Vector3::new(i_a, i_b, -(i_a + i_b));
         let i = clarke(&i_abc);
@@ -288,6 +299,7 @@ impl Ideal {
         let seen = Observation {
             adc,
             i: measured,
+            sum: shown.iter().sum(),
             hall,
             demand: match self.speed_loop {
                 Some(_) => self.speed != 0.0,
@@ -442,6 +454,8 @@ impl Ideal {
             Period::Low => Command::idle(Duties::LOW),
             Period::Off => Command::idle(Duties::OFF),
         };
+        let legs = command.duties.to_legs(self.timer_period);
+        self.state.supervisor.follow_legs(&self.limits, legs);
 
         // 12 remember
         self.state.i_prev = [i_a, i_b];

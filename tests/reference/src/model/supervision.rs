@@ -3,10 +3,10 @@
 //! compared in the model's unit.
 
 use crate::Error;
-use crate::exact::{Word, greater, lesser, within, word};
+use crate::exact::{Word, greater, lesser, pow2, within, word};
 use crate::model::sector::hall_sectors;
-use crate::spec::{Bus, Inverter, SensedPhases, Spec};
-use hexagen::Fault;
+use crate::spec::{Bus, CurrentSensing, Inverter, SensedPhases, Spec};
+use hexagen::{Fault, LegState, Legs};
 
 /// Being off on purpose, or its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +65,7 @@ pub fn fault_from_word(word: i32) -> Option<Fault> {
         6 => Fault::OverVoltage,
         7 => Fault::UnderVoltage,
         8 => Fault::Residual,
+        9 => Fault::CurrentSum,
         _ => return None,
     })
 }
@@ -82,6 +83,7 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
         Some(Fault::OverVoltage) => 6,
         Some(Fault::UnderVoltage) => 7,
         Some(Fault::Residual) => 8,
+        Some(Fault::CurrentSum) => 9,
         Some(other) => unreachable!("unknown fault: {other:?}"),
     }
 }
@@ -93,9 +95,13 @@ pub struct Limits {
     /// The phases with a sensor.
     pub sensed: SensedPhases,
     /// 1, or -1 where the counts of a sensor fall with the current.
-    pub polarity: [f64; 2],
-    /// Count of each sensor at zero current, and its tolerance in calibration.
-    pub adc_offset: [f64; 2],
+    pub polarity: [f64; 3],
+    /// Gain of each sensor over that of the first.
+    pub ratio: [f64; 3],
+    /// Count of each sensor at zero current, and its tolerance in calibration; 0 of a third that is not there.
+    pub adc_offset: [f64; 3],
+    /// With three sensors.
+    pub third: Option<Third>,
     pub offset_tolerance: f64,
     /// Least and greatest current of any sensor at any of its offsets, in the model's unit.
     pub currents: [f64; 2],
@@ -115,22 +121,80 @@ pub struct Limits {
     pub sectors: [usize; 8],
 }
 
+/// What is made of three current sensors; the current in the model's unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Third {
+    /// In the low legs: largest compare value of a leg that is read at the end of its period.
+    pub readable: Option<u32>,
+    /// Whether a command takes effect one period after its sample.
+    pub is_delayed: bool,
+    /// Largest sum of the currents without a fault.
+    pub sum_tolerance: f64,
+    /// Samples in a row with a larger one that are a fault; 0: none are.
+    pub sum_samples: f64,
+}
+
+/// Units of the supervision's currents.
+#[derive(Clone, Copy, Debug)]
+pub struct Units {
+    /// The trip level.
+    pub i_trip: f64,
+    /// Current of a count of the first sensor.
+    pub count: f64,
+    /// Current of an ampere.
+    pub ampere: f64,
+    /// Fraction bits of the ratio of two gains; currents are whole numbers then.
+    pub ratio_bits: Option<i32>,
+}
+
+impl Units {
+    /// A ratio as the model has it.
+    fn ratio(&self, ratio: f64) -> f64 {
+        self.ratio_bits
+            .map_or(ratio, |bits| (ratio * pow2(bits)).round() / pow2(bits))
+    }
+
+    fn rounded(&self, current: f64) -> f64 {
+        self.ratio_bits.map_or(current, |_| (current + 0.5).floor())
+    }
+}
+
 impl Limits {
-    /// The limits of a specification. The trip level and the current of an ADC count are in the model's
-    /// unit of current.
-    pub fn new(spec: &Spec, i_trip: f64, count: f64) -> Result<Self, Error> {
+    /// The limits of a specification.
+    pub fn new(spec: &Spec, units: Units) -> Result<Self, Error> {
         let inverter = &spec.inverter;
+        let sensors = inverter.sensed_phases.phases().len();
         let adc_max = f64::from((1u32 << inverter.adc_bits) - 1);
-        let polarity = [0, 1].map(|sensor| inverter.adc_gain.of(sensor).signum());
-        let adc_offset = [0, 1].map(|sensor| f64::from(inverter.adc_offset.of(sensor)));
+        let each = |of: &dyn Fn(usize) -> f64, none: f64| {
+            [0, 1, 2].map(|sensor| if sensor < sensors { of(sensor) } else { none })
+        };
+        let first_gain = inverter.adc_gain.first().abs();
+        let polarity = each(&|sensor| inverter.adc_gain.of(sensor).signum(), 1.0);
+        let ratio = each(
+            &|sensor| units.ratio(inverter.adc_gain.of(sensor).abs() / first_gain),
+            1.0,
+        );
+        let adc_offset = each(&|sensor| f64::from(inverter.adc_offset.of(sensor)), 0.0);
         let tolerance = f64::from(inverter.offset_tolerance);
-        let ends = [0, 1].map(|sensor: usize| {
+        let mut currents = [0.0_f64; 2];
+        for sensor in 0..sensors {
             let far = (adc_offset[sensor] + tolerance).min(adc_max);
             let near = (adc_offset[sensor] - tolerance).max(0.0);
-            let ends = [-far, adc_max - near].map(|end| end * count * polarity[sensor]);
-            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+            for end in [-far, adc_max - near] {
+                let current = end * units.count * polarity[sensor] * ratio[sensor];
+                let current = units.rounded(current);
+                currents = [currents[0].min(current), currents[1].max(current)];
+            }
+        }
+        let is_low_side = inverter.current_sensing == CurrentSensing::LowSide;
+        let readable = inverter.read_compare()?;
+        let third = (sensors == 3).then(|| Third {
+            readable: is_low_side.then_some(readable),
+            is_delayed: spec.loop_options().delay == 1,
+            sum_tolerance: units
+                .rounded(inverter.current_sum_tolerance.unwrap_or_default() * units.ampere),
+            sum_samples: f64::from(inverter.current_sum_samples),
         });
-        let currents = [ends[0][0].min(ends[1][0]), ends[0][1].max(ends[1][1])];
         let samples = 1u32
             .checked_shl(inverter.calibration_log2)
             .ok_or(Error::Field {
@@ -142,10 +206,12 @@ impl Limits {
             adc_max,
             sensed: inverter.sensed_phases,
             polarity,
+            ratio,
             adc_offset,
+            third,
             offset_tolerance: tolerance,
             currents,
-            i_trip,
+            i_trip: units.i_trip,
             calibration_samples: f64::from(samples),
             precharge_periods: f64::from(inverter.precharge_periods),
             stall_periods: f64::from(inverter.stall_periods),
@@ -221,31 +287,35 @@ impl BusWatch {
 }
 
 impl Limits {
-    /// Currents of all phases, of those that are sensed: the third phase has the rest.
-    pub fn phases<W: Word>(&self, [first, second]: [W; 2]) -> [W; 3] {
+    /// Currents of all phases, of what the sensors show; that of the leg that is not read is the rest of the other
+    /// two.
+    pub fn phases<W: Word>(&self, shown: [W; 3], unread: Option<usize>) -> [W; 3] {
+        let [first, second, third] = shown;
+        let [first, second] = match unread {
+            Some(0) => [-(second + third), second],
+            Some(1) => [first, -(first + third)],
+            _ => [first, second],
+        };
         self.sensed.of_phases([first, second], -(first + second))
     }
 
-    /// The currents of phases a and b for the law: that of a phase without a sensor is limited to what a sensor
-    /// shows, which at rest it may exceed.
+    /// The currents of phases a and b for the law: limited to what a sensor shows, which the rest of two others may
+    /// exceed at rest.
     pub fn for_law<W: Word>(&self, [i_a, i_b, _]: [W; 3]) -> [W; 2] {
         let [least, most] = self.currents;
-        let limited = |i| within(i, least, most);
-        match self.sensed {
-            SensedPhases::Bc => [limited(i_a), i_b],
-            SensedPhases::Ca => [i_a, limited(i_b)],
-            SensedPhases::Ab => [i_a, i_b],
-        }
+        [i_a, i_b].map(|i| within(i, least, most))
     }
 }
 
 /// The supervisor's inputs of one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<W> {
-    /// ADC counts of the two sensors, as read.
-    pub adc: [W; 2],
+    /// ADC counts of the first two sensors and the third phase, as read.
+    pub adc: [W; 3],
     /// Phase currents.
     pub i: [W; 3],
+    /// Sum of what three sensors show.
+    pub sum: W,
     /// Hall code of the sample.
     pub hall: HallSample,
     /// The set-point is not zero.
@@ -279,7 +349,10 @@ pub struct Supervisor<W = f64> {
     pub mode: Mode,
     pub fault: Option<Fault>,
     pub countdown: W,
-    pub sum: [W; 2],
+    pub sum: [W; 3],
+    /// Samples in a row whose currents do not add up.
+    pub sum_count: W,
+    pub unread: Unread,
     /// Periods without an edge under demand; 0 without stall detection.
     pub stall_count: W,
     /// The last sound Hall code, with stall detection or bridging; 0 before the first.
@@ -289,6 +362,18 @@ pub struct Supervisor<W = f64> {
     pub hall_glitches: W,
     /// Rotation since control ended or the drive was made.
     pub turn: Turn<W>,
+}
+
+/// The legs that the sensors in three low legs do not show at the end of a period: of the period that ends at the next
+/// sample, and with a delay of the one after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unread(pub [Option<usize>; 2]);
+
+impl Default for Unread {
+    /// All legs are off.
+    fn default() -> Self {
+        Self([Some(0); 2])
+    }
 }
 
 /// Rotation of the rotor by the Hall edges since control ended or the drive was made.
@@ -356,7 +441,7 @@ impl<W: Word> Supervisor<W> {
         if self.mode != Mode::Tripped {
             self.mode = Mode::Calibrate;
             self.countdown = word(limits.calibration_samples);
-            self.sum = [word(0.0); 2];
+            self.sum = [word(0.0); 3];
         }
     }
 
@@ -427,6 +512,54 @@ impl<W: Word> Supervisor<W> {
         }
     }
 
+    /// The sensor that does not show its phase's current in this sample.
+    pub fn unread(&self, limits: &Limits) -> Option<usize> {
+        match limits.third {
+            None => Some(2),
+            Some(Third { readable: None, .. }) => None,
+            Some(_) => self.unread.0[0],
+        }
+    }
+
+    /// Follows the legs of a period: one that is off, or high for too long, is not read at its end.
+    pub fn follow_legs(&mut self, limits: &Limits, legs: Legs) {
+        let Some(third) = limits.third else {
+            return;
+        };
+        let Some(readable) = third.readable else {
+            return;
+        };
+        let is_read = |x: usize| match legs.state()[x] {
+            LegState::Low => true,
+            LegState::Pulsed => u32::from(legs.compare()[x]) <= readable,
+            LegState::Off => false,
+        };
+        let unread = (0..3).find(|&x| !is_read(x));
+        self.unread = Unread(if third.is_delayed {
+            [self.unread.0[1], unread]
+        } else {
+            [unread, Some(0)]
+        });
+    }
+
+    /// Counts samples in a row whose three currents do not add up; whether there are too many.
+    fn count_sum(&mut self, limits: &Limits, sum: W) -> bool {
+        let Some(third) = limits.third.filter(|third| third.sum_samples > 0.0) else {
+            self.sum_count = word(0.0);
+            return false;
+        };
+        if self.mode != Mode::Run {
+            self.sum_count = word(0.0);
+        } else if self.unread(limits).is_none() {
+            self.sum_count = if sum.abs() > third.sum_tolerance {
+                lesser(self.sum_count + 1.0, third.sum_samples)
+            } else {
+                word(0.0)
+            };
+        }
+        self.sum_count == third.sum_samples
+    }
+
     /// Takes the Hall code of a sample; once per period, before [`step`](Self::step).
     pub fn take_hall(&mut self, limits: &Limits, sampled: u8) -> HallSample {
         let code = HallCode::of(sampled ^ limits.hall_inverted);
@@ -464,17 +597,22 @@ impl<W: Word> Supervisor<W> {
             };
             self.count_stall(limits, code, seen.demand);
         }
-        let i_max = greater(greater(seen.i[0].abs(), seen.i[1].abs()), seen.i[2].abs());
-        let found = if seen
+        let is_sum_off = self.count_sum(limits, seen.sum);
+        let unread = self.unread(limits);
+        let mut read = seen
             .adc
             .iter()
-            .any(|&adc| adc == 0.0 || adc >= limits.adc_max)
-        {
+            .enumerate()
+            .filter(|(x, _)| Some(*x) != unread);
+        let i_max = greater(greater(seen.i[0].abs(), seen.i[1].abs()), seen.i[2].abs());
+        let found = if read.any(|(_, adc)| *adc == 0.0 || *adc >= limits.adc_max) {
             Some(Fault::AdcRange)
         } else if is_wrong {
             Some(Fault::Hall)
         } else if i_max > limits.i_trip {
             Some(Fault::OverCurrent)
+        } else if is_sum_off {
+            Some(Fault::CurrentSum)
         } else if limits.stall_periods > 0.0 && self.stall_count == limits.stall_periods {
             Some(Fault::Stall)
         } else {
@@ -523,7 +661,8 @@ impl<W: Word> Supervisor<W> {
             Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
             Mode::Start => self.go_on(),
             Mode::Calibrate => {
-                for (sum, adc) in self.sum.iter_mut().zip(seen.adc) {
+                let sensors = limits.sensed.phases().len();
+                for (sum, adc) in self.sum.iter_mut().zip(seen.adc).take(sensors) {
                     *sum += lesser(adc, limits.adc_max);
                 }
                 self.countdown = greater(self.countdown - 1.0, 0.0);
@@ -531,7 +670,7 @@ impl<W: Word> Supervisor<W> {
                 let is_far = |(sum, offset): (&W, f64)| {
                     (*sum - offset * samples).abs() > limits.offset_tolerance * samples
                 };
-                let mut sums = self.sum.iter().zip(limits.adc_offset);
+                let mut sums = self.sum.iter().zip(limits.adc_offset).take(sensors);
                 if self.countdown == 0.0 && sums.any(is_far) {
                     self.mode = Mode::Tripped;
                     self.fault = Some(Fault::Offset);

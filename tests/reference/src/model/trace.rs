@@ -67,7 +67,7 @@ pub struct PhysicalState {
     /// Remaining samples of a commutation, the last one included.
     pub(super) commutation_left: f64,
     /// ADC offsets, counts.
-    pub offset: [f64; 2],
+    pub offset: [f64; 3],
     /// Currents of phases a, b at the last sample, ampere.
     pub i_prev: [f64; 2],
     /// Voltage that the last step commanded (no leg ever off), phases a, b, volt.

@@ -58,7 +58,7 @@ pub enum Action {
 #[derive(Clone, Copy, Debug)]
 pub struct Context {
     /// Current offsets, ADC counts.
-    pub offset: [f64; 2],
+    pub offset: [f64; 3],
     /// The drive is tripped.
     pub tripped: bool,
 }
@@ -85,15 +85,15 @@ pub struct Stimulus {
     adc_max: i32,
     sensed: SensedPhases,
     /// Ampere per count of each sensor.
-    gain: [f64; 2],
+    gain: [f64; 3],
     trip_counts: i32,
     i_max_bits: f64,
     t_max_bits: f64,
     startup_steps: u32,
     /// Remaining steps of start-up, and the true offsets during it, ADC counts.
     start_up: u32,
-    true_offset: [i32; 2],
-    nominal_offset: [i32; 2],
+    true_offset: [i32; 3],
+    nominal_offset: [i32; 3],
     offset_tolerance: i32,
     bus: Option<BusSense>,
     /// Least and greatest count of the bus without a fault.
@@ -112,6 +112,7 @@ impl Stimulus {
     /// If the specification is inconsistent.
     pub fn new(spec: &Spec, seed: u64) -> Result<Self, Error> {
         let inverter = &spec.inverter;
+        let sensors = inverter.sensed_phases.phases().len();
         Ok(Self {
             random: Rng::with_seed(seed),
             stream: Stream::Motor,
@@ -128,14 +129,15 @@ impl Stimulus {
             age_max: inverter.age_max,
             adc_max: (1 << inverter.adc_bits) - 1,
             sensed: inverter.sensed_phases,
-            gain: [0, 1].map(|sensor| inverter.adc_gain.of(sensor)),
+            gain: [0, 1, 2].map(|sensor| inverter.adc_gain.of(sensor.min(sensors - 1))),
             trip_counts: (inverter.trip_current / inverter.adc_gain.first().abs()) as i32,
             i_max_bits: inverter.max_current * 65_536.0,
             t_max_bits: inverter.max_current * spec.motor.torque_constant * 65_536.0,
             startup_steps: (1 << inverter.calibration_log2) + inverter.precharge_periods,
             start_up: 0,
-            true_offset: [0; 2],
-            nominal_offset: [0, 1].map(|sensor| inverter.adc_offset.of(sensor) as i32),
+            true_offset: [0; 3],
+            nominal_offset: [0, 1, 2]
+                .map(|sensor| inverter.adc_offset.of(sensor.min(sensors - 1)) as i32),
             offset_tolerance: inverter.offset_tolerance as i32,
             bus_counts: inverter.bus_counts,
             hall_glitches: inverter.hall_glitches,
@@ -221,8 +223,8 @@ impl Stimulus {
 
     /// A motor without current, its ADCs at their true offsets.
     fn at_rest(&mut self) -> Sample {
-        let noise = [0; 2].map(|_: i32| self.random.i32(-1..=1));
-        let counts = [0, 1].map(|x| self.adc(self.true_offset[x] + noise[x]));
+        let noise = [0; 3].map(|_: i32| self.random.i32(-1..=1));
+        let counts = [0, 1, 2].map(|x| self.adc(self.true_offset[x] + noise[x]));
         self.sensed
             .sample(counts, self.codes[self.sector])
             .hall_ticks(u16::MAX)
@@ -371,29 +373,25 @@ impl Stimulus {
         let (hall, hall_ticks) = self.wandering_hall();
         let dice = self.random.u32(..);
         let counts = match dice & 0x7f {
-            0 => [self.random.u16(..), self.random.u16(..)],
-            1 => [
-                self.random.i32(0..=self.adc_max) as u16,
-                self.random.i32(0..=self.adc_max) as u16,
-            ],
+            0 => [0; 3].map(|_: u16| self.random.u16(..)),
+            1 => [0; 3].map(|_: u16| self.random.i32(0..=self.adc_max) as u16),
             _ => {
                 // All three currents within the trip level.
                 let trip = self.trip_counts;
                 let a = self.random.i32(-trip..=trip);
                 let b = self.random.i32((-trip).max(-trip - a)..=trip.min(trip - a));
-                // Of unlike sensors the counts of one current move to different sides.
-                let b = if self.gain[0] * self.gain[1] < 0.0 {
-                    -b
-                } else {
-                    b
-                };
-                [
-                    self.adc(context.offset[0] as i32 + a),
-                    self.adc(context.offset[1] as i32 + b),
-                ]
+                self.counts_of([a, b, -(a + b)], context)
             }
         };
         self.sensed.sample(counts, hall).hall_ticks(hall_ticks)
+    }
+
+    /// Counts of currents in counts of the first sensor; of unlike sensors they move to different sides, or as far.
+    fn counts_of(&self, currents: [i32; 3], context: &Context) -> [u16; 3] {
+        [0, 1, 2].map(|x| {
+            let current = f64::from(currents[x]) * self.gain[0] / self.gain[x];
+            self.adc(context.offset[x] as i32 + current.round() as i32)
+        })
     }
 
     fn motor(&mut self, context: &Context) -> Sample {
@@ -406,7 +404,7 @@ impl Stimulus {
             self.age = f64::from((dice >> 4) & 0xff) * self.ticks / 256.0;
         }
         self.sector = sector;
-        let noise = [(dice & 3) as i32 - 1, ((dice >> 2) & 3) as i32 - 1];
+        let noise = [0, 2, 8].map(|shift| ((dice >> shift) & 3) as i32 - 1);
         let [i_a, i_b] = self.motor.i;
         let currents = self.sensed.of_sensors([i_a, i_b, -(i_a + i_b)]);
         let count = |sensor: usize| {
@@ -418,7 +416,7 @@ impl Stimulus {
         } else {
             self.codes[sector]
         };
-        let counts = [count(0), count(1)];
+        let counts = [count(0), count(1), count(2)];
         self.sensed
             .sample(counts, self.disturb(hall))
             .hall_ticks(self.age as u16)
@@ -439,7 +437,16 @@ impl Stimulus {
                 _ => offset + near,
             }
         };
-        let counts = context.offset.map(&mut corner);
+        let [first, second, mut third] = context.offset.map(&mut corner);
+        if self.sensed == SensedPhases::Abc && self.random.u8(..4) != 0 {
+            // Mostly the three currents add up.
+            let current = |count: i32, x: usize| {
+                f64::from(count - context.offset[x] as i32) * self.gain[x] / self.gain[2]
+            };
+            let rest = -(current(first, 0) + current(second, 1));
+            third = context.offset[2] as i32 + rest.round() as i32;
+        }
+        let counts = [first, second, third];
         // One above the ADC's range is a corner case, too.
         let counts = counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
         self.sensed.sample(counts, hall).hall_ticks(hall_ticks)

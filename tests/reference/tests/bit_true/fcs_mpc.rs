@@ -51,7 +51,7 @@ fn the_nearest_candidate_is_chosen() {
         let mut v_bus = variant.spec.inverter.v_bus;
         for _ in 0..1000 {
             let context = Context {
-                offset: [f64::from(variant.spec.inverter.adc_offset.first()); 2],
+                offset: [f64::from(variant.spec.inverter.adc_offset.first()); 3],
                 tripped: !ideal.trace().run,
             };
             let (action, sample) = stimulus.next(&context);

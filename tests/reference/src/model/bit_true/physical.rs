@@ -17,7 +17,7 @@ impl BitTrue {
     }
 
     /// Current offsets, ADC counts.
-    pub fn offset_counts(&self) -> [f64; 2] {
+    pub fn offset_counts(&self) -> [f64; 3] {
         self.state.offset.map(|word| word / self.k.count)
     }
 

@@ -5,7 +5,9 @@ use super::parts::{Part, Parts};
 use crate::exact::{Word, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
-use crate::model::supervision::{HallCode, Mode, Supervisor, fault_from_word, fault_to_word};
+use crate::model::supervision::{
+    HallCode, Mode, Supervisor, Unread, fault_from_word, fault_to_word,
+};
 use crate::model::trace::Past;
 use hexagen::Fault;
 
@@ -13,7 +15,7 @@ use hexagen::Fault;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State<W: Word> {
     pub supervisor: Supervisor<W>,
-    pub offset: [W; 2],
+    pub offset: [W; 3],
     pub sector_prev: usize,
     pub timing: HallTiming<W>,
     pub omega: W,
@@ -146,6 +148,19 @@ impl WordValue for HallCode {
     }
 }
 
+/// Two bits for each, 3 where all legs are read; that of the ended period lowest.
+impl WordValue for Unread {
+    fn to_word(&self) -> i32 {
+        let [ended, next] = self.0.map(|unread| unread.unwrap_or(3) as i32);
+        // Without a delay the next one is 0.
+        ended | next << 2
+    }
+
+    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
+        self.0 = [word & 3, word >> 2 & 3].map(|leg| (leg < 3).then_some(leg as usize));
+    }
+}
+
 /// Calls `$show!(name, place)` for every word of a variant: the supervisor's, then the law's in the
 /// order of the semantics' list.
 macro_rules! for_each_word {
@@ -165,6 +180,10 @@ macro_rules! for_each_word {
         $show!("turn_age", $state.supervisor.turn.age);
         $show!("turn_interval", $state.supervisor.turn.interval);
         $show!("turn_direction", $state.supervisor.turn.direction);
+        $show!("sum_c", $state.supervisor.sum[2]);
+        $show!("offset_c", $state.offset[2]);
+        $show!("sum_count", $state.supervisor.sum_count);
+        $show!("unread", $state.supervisor.unread);
         if $parts.has(Part::Edges) {
             $show!("sector_prev", $state.sector_prev);
         }

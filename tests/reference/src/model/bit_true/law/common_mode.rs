@@ -1,7 +1,8 @@
 //! The common mode of three pulsed legs (sections 10 and 11).
 
-use crate::exact::{Coefficient, Word, greater, lesser, word};
+use crate::exact::{Coefficient, Word, all_three, both, greater, halve, lesser, within, word};
 use crate::model::bit_true::constants::{Constants, Scale};
+use crate::model::bit_true::limit::Limited;
 use crate::{CommonMode, Error, Spec};
 
 /// Policy and largest compare value.
@@ -10,46 +11,95 @@ pub struct CommonModeRule<W> {
     mode: CommonMode,
     /// TOP, counts.
     pub top: f64,
-    reach: Reach<W>,
+    /// Largest compare value of the second highest leg, counts.
+    second_top: f64,
+    reach: Share<W>,
+    /// V_SECOND, where the second highest leg's limit is its own.
+    second: Option<Share<W>>,
 }
 
-/// V_REACH.
+/// A part of the bus.
 #[derive(Clone, Debug)]
-enum Reach<W> {
+enum Share<W> {
     Bus,
     Word(f64),
-    Share(Coefficient<W>),
+    Of(Coefficient<W>),
 }
 
 impl<W: Word> CommonModeRule<W> {
     pub fn new(spec: &Spec, mode: CommonMode, scale: &Scale) -> Result<Self, Error> {
         let inverter = &spec.inverter;
-        let (period, top) = (inverter.timer_period, inverter.largest_compare()?);
+        let (period, readable) = (inverter.timer_period, inverter.largest_compare()?);
+        let top = match mode {
+            CommonMode::Centred => readable,
+            CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_compare()?,
+        };
         let counts = match mode {
             CommonMode::Centred => 2.0 * f64::from(top) - f64::from(period),
             CommonMode::Readable | CommonMode::ClampedLow => f64::from(top),
         };
-        let reach = if top == period {
-            Reach::Bus
-        } else if inverter.bus_sense()?.is_none() {
-            Reach::Word(counts * scale.two_v)
-        } else {
-            Reach::Share(scale.coefficient("k_reach", counts / f64::from(period))?)
+        let is_fixed = inverter.bus_sense()?.is_none();
+        let share = |name: &'static str, counts: f64| -> Result<Share<W>, Error> {
+            Ok(if is_fixed {
+                Share::Word(counts * scale.two_v)
+            } else {
+                Share::Of(scale.coefficient(name, counts / f64::from(period))?)
+            })
         };
         Ok(Self {
             mode,
             top: f64::from(top),
-            reach,
+            second_top: f64::from(readable),
+            reach: if top == period {
+                Share::Bus
+            } else {
+                share("k_reach", counts)?
+            },
+            second: (readable < top)
+                .then(|| share("k_second", f64::from(readable)))
+                .transpose()?,
         })
     }
 
     /// V_REACH at this bus.
     #[inline]
     pub fn reach(&self, v_bus: W) -> W {
-        match &self.reach {
-            Reach::Bus => v_bus,
-            Reach::Word(reach) => word(*reach),
-            Reach::Share(k_reach) => k_reach.mul(v_bus),
+        self.reach.at(v_bus)
+    }
+
+    /// Legs about the middle of the bus; where the highest need not be read, the second highest no higher than its
+    /// sensor can be.
+    #[inline]
+    pub fn readable(&self, k: &Constants<W>, v_bus: W, limited: Limited<W>) -> Limited<W> {
+        let Limited { u, legs, reach } = limited;
+        let [a, b, c] = legs;
+        let middle = halve(greater(greater(a, b), c) + lesser(lesser(a, b), c));
+        let half = halve(self.reach(v_bus) + 1.0);
+        let legs = all_three(|x| within(legs[x] - middle, -half, half));
+        let unchanged = Limited { u, legs, reach };
+        let Some(v_second) = &self.second else {
+            return unchanged;
+        };
+        let [a, b, c] = legs;
+        let (high, low) = (greater(greater(a, b), c), lesser(lesser(a, b), c));
+        let second = a + b + c - high - low;
+        let most = low + v_second.at(v_bus);
+        if second <= most {
+            return unchanged;
+        }
+        let highest = [0, 1, 2].into_iter().find(|&x| legs[x] == high);
+        let lowered = all_three(|x| {
+            if Some(x) == highest {
+                legs[x]
+            } else {
+                lesser(legs[x], most)
+            }
+        });
+        let mean = k.k_third.mul(second - most);
+        Limited {
+            u: both(|x| u[x] - (legs[x] - lowered[x]) + mean),
+            legs: lowered,
+            reach,
         }
     }
 
@@ -57,13 +107,27 @@ impl<W: Word> CommonModeRule<W> {
     #[inline]
     pub fn lift(&self, k: &Constants<W>, pulses: [W; 3]) -> W {
         let [a, b, c] = pulses;
-        match self.mode {
+        let (high, low) = (greater(greater(a, b), c), lesser(lesser(a, b), c));
+        let within_top = |top: f64, leg: W| word::<W>(top * 2.0 * k.half_count) - leg;
+        let lift = match self.mode {
             CommonMode::Centred => word(k.half),
-            CommonMode::Readable => {
-                let top: W = word(self.top * 2.0 * k.half_count);
-                lesser(word(k.half), top - greater(greater(a, b), c))
-            }
-            CommonMode::ClampedLow => -lesser(lesser(a, b), c),
+            CommonMode::Readable => lesser(word(k.half), within_top(self.top, high)),
+            CommonMode::ClampedLow => -low,
+        };
+        match self.second {
+            Some(_) => lesser(lift, within_top(self.second_top, a + b + c - high - low)),
+            None => lift,
+        }
+    }
+}
+
+impl<W: Word> Share<W> {
+    #[inline]
+    fn at(&self, v_bus: W) -> W {
+        match self {
+            Self::Bus => v_bus,
+            Self::Word(volts) => word(*volts),
+            Self::Of(share) => share.mul(v_bus),
         }
     }
 }

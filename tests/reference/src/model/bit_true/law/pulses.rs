@@ -2,7 +2,7 @@
 
 use super::common_mode::CommonModeRule;
 use super::{Command, Inputs};
-use crate::exact::{Word, all_three, floor, greater, halve, lesser, to_u16, within, word};
+use crate::exact::{Word, all_three, floor, halve, to_u16, within, word};
 use crate::model::sector;
 use hexagen::{LegState, Legs};
 
@@ -34,19 +34,15 @@ pub fn compare_of<W: Word>(now: &Inputs<W>, t: W, shift: W) -> u16 {
     compare(now, nominal(now, t) + shift, now.k.timer_period)
 }
 
-/// Three pulsed legs with voltages `u` against any common point, their common mode in the middle of
-/// the bus; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.
+/// Three pulsed legs with voltages about the middle of the bus; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.
 #[inline]
 pub fn three<W: Word>(
     now: &Inputs<W>,
-    u: [W; 3],
+    centred: [W; 3],
     shifts: [W; 3],
     common_mode: &CommonModeRule<W>,
     terminals: bool,
 ) -> Command<W> {
-    let middle = halve(greater(greater(u[0], u[1]), u[2]) + lesser(lesser(u[0], u[1]), u[2]));
-    let half = halve(common_mode.reach(now.v_bus) + 1.0);
-    let centred = all_three(|x| within(u[x] - middle, -half, half));
     let terminal = if terminals {
         let half_bus = halve(now.v_bus);
         all_three(|x| within(centred[x] + half_bus, 0.0, now.v_bus))

@@ -9,13 +9,29 @@ pub struct CommonModeRule {
     mode: CommonMode,
     /// Largest duty.
     pub top: f64,
+    /// Largest duty of the second highest leg.
+    second: f64,
+}
+
+/// The leg between the highest and the lowest.
+fn second(legs: &Vector3<f64>) -> f64 {
+    legs.sum() - legs.max() - legs.min()
 }
 
 impl CommonModeRule {
     pub fn new(spec: &Spec, mode: CommonMode) -> Result<Self, Error> {
         let inverter = &spec.inverter;
-        let top = f64::from(inverter.largest_compare()?) / f64::from(inverter.timer_period);
-        Ok(Self { mode, top })
+        let duty = |counts: u32| f64::from(counts) / f64::from(inverter.timer_period);
+        let readable = inverter.largest_compare()?;
+        let top = match mode {
+            CommonMode::Centred => readable,
+            CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_compare()?,
+        };
+        Ok(Self {
+            mode,
+            top: duty(top),
+            second: duty(readable),
+        })
     }
 
     /// The spread of phase voltages that fits, of a bus of `v_bus`.
@@ -26,12 +42,29 @@ impl CommonModeRule {
         }
     }
 
+    /// Phase voltages of which the second highest is where its leg's sensor can be read.
+    pub fn readable(self, u: &Vector3<f64>, v_bus: f64) -> Vector3<f64> {
+        let most = u.min() + self.second * v_bus;
+        let above = second(u) - most;
+        if above <= 0.0 || self.second >= self.top {
+            return *u;
+        }
+        let highest = u.imax();
+        Vector3::from_fn(|x, _| if x == highest { u[x] } else { u[x].min(most) })
+            .add_scalar(above / 3.0)
+    }
+
     /// What duties of zero middle are lifted by.
     pub fn lift(self, duties: &Vector3<f64>) -> f64 {
-        match self.mode {
+        let lift = match self.mode {
             CommonMode::Centred => 0.5,
             CommonMode::Readable => (self.top - duties.max()).min(0.5),
             CommonMode::ClampedLow => -duties.min(),
+        };
+        if self.second < self.top {
+            lift.min(self.second - second(duties))
+        } else {
+            lift
         }
     }
 }

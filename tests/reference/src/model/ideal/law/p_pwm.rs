@@ -32,12 +32,13 @@ impl PPwm {
             &phases(&now.e),
             self.common_mode.reach(now.v_bus),
         );
+        let legs = self.common_mode.readable(&limited.u, now.v_bus);
         Decision {
             u_unsat,
-            u: clarke(&limited.u),
+            u: clarke(&legs),
             reach: limited.reach,
             vector: 0,
-            command: pulses::three(now, &limited.u, &[0.0; 3].into(), self.common_mode),
+            command: pulses::three(now, &legs, &[0.0; 3].into(), self.common_mode),
             integral: to_ab(&now.integral),
             rises: now.rises,
             past: now.past,

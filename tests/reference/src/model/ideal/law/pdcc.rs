@@ -37,12 +37,13 @@ impl Pdcc {
             &phases(&e),
             self.common_mode.reach(now.v_bus),
         );
+        let legs = self.common_mode.readable(&limited.u, now.v_bus);
         let command = if options.modulation == Modulation::Pair && !now.commutating {
             pulses::pair(now, &phases(&u_unsat), &shifts)
         } else {
-            pulses::three(now, &limited.u, &shifts, self.common_mode)
+            pulses::three(now, &legs, &shifts, self.common_mode)
         };
-        let u = clarke(&limited.u);
+        let u = clarke(&legs);
         Decision {
             u_unsat,
             u,

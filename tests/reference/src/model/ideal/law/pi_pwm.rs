@@ -50,7 +50,8 @@ impl PiPwm {
             &phases(&now.e),
             self.common_mode.reach(now.v_bus),
         );
-        let u = clarke(&limited.u);
+        let legs = self.common_mode.readable(&limited.u, now.v_bus);
+        let u = clarke(&legs);
         let integral = now.integral + (p + u - u_unsat) * self.k_i;
         Decision {
             u_unsat,
@@ -59,7 +60,7 @@ impl PiPwm {
             vector: 0,
             command: pulses::three(
                 now,
-                &limited.u,
+                &legs,
                 &self.dead_time.shifts(now, 1.0),
                 self.common_mode,
             ),
