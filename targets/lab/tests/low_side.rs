@@ -1,6 +1,7 @@
 //! Current sensors in the low legs, in closed loop: an accepted drive has no blind sample, and without the window the
 //! same controller loses its currents.
 
+use hexagen::Fault;
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{check, parse_toml};
 use hexagen_lab::Interpreted;
@@ -19,6 +20,7 @@ struct Run {
     blind: u64,
     torque: f64,
     turn_ons: u64,
+    fault: Option<Fault>,
 }
 
 /// A drive that was generated for `sensors`, at full current, on a plant whose sensors are in the low legs.
@@ -53,9 +55,15 @@ fn run_with(
     change(&mut params);
     let mut plant = Plant::new(params, 0.117, rpm * TAU / 60.0).expect("a plant");
     let mut pending = hexagen::Legs::OFF;
-    let mut torque = 0.0;
+    // Of the first controlled period a later conversion comes before the switches that have just turned on
+    // have settled, while hardly any current flows.
+    let (mut torque, mut at_start) = (0.0, None);
     for period in 0..PERIODS {
-        let command = drive.step(&plant.sample(pending));
+        let sampled = plant.sample(pending);
+        if at_start.is_none() && pending != hexagen::Legs::OFF {
+            at_start = Some(plant.blind_samples().min(1));
+        }
+        let command = drive.step(&sampled);
         let applied = std::mem::replace(&mut pending, command);
         plant.run_period(applied, &mut ());
         if period >= SETTLED {
@@ -63,9 +71,10 @@ fn run_with(
         }
     }
     Run {
-        blind: plant.blind_samples(),
+        blind: plant.blind_samples() - at_start.unwrap_or_default(),
         torque,
         turn_ons: plant.turn_ons(),
+        fault: drive.fault(),
     }
 }
 
@@ -92,6 +101,75 @@ fn sensors_of_any_two_legs_show_the_same_torque() {
             other.torque < 0.5 * expected,
             "{sensors}: {} Nm",
             other.torque
+        );
+    }
+}
+
+/// Three sensors in the low legs, as hardware has them.
+fn three() -> String {
+    let one_adc = LOW_SIDE.replace("conversion_time = \"0 us\"", "conversion_time = \"400 ns\"");
+    format!("{one_adc}sensed_phases = \"abc\"\n")
+}
+
+/// The leg that is highest need not be read: the other two show its current, so that it may be high for longer. Near
+/// the voltage limit that is torque; two thirds of the corners of the hexagon lie further out, the others where they
+/// were.
+#[test]
+fn of_three_sensors_two_are_enough_and_the_legs_reach_further() {
+    let worsen = |plant: &mut PlantParams| {
+        for (channel, sign) in plant.adc.iter_mut().zip([1.0, -1.0, 0.5]) {
+            channel.amperes_per_count *= 1.0 + 0.01 * sign;
+            channel.offset += 5.0 * sign;
+            channel.noise = 1.0;
+        }
+    };
+    for controller in CONTROLLERS {
+        for rpm in SPEEDS {
+            let two = run(LOW_SIDE, controller, rpm);
+            let three = run_with(&three(), &three(), controller, rpm, worsen);
+            let text = format!(
+                "{controller} at {rpm} rpm: {} and {} Nm",
+                two.torque, three.torque
+            );
+            assert_eq!((three.blind, three.fault), (0, None), "{text}");
+            let gained = three.torque / two.torque;
+            assert!((0.99..1.2).contains(&gained), "{text}");
+            let is_limited = rpm >= 2200.0 && !controller.contains("centred");
+            assert!(!is_limited || gained > 1.01, "{text}");
+        }
+    }
+}
+
+/// Their sum shows a sensor that is wrong, and nothing else: no other fault comes first.
+#[test]
+fn the_sum_of_three_currents_shows_a_wrong_sensor() {
+    for sensors in ["sensed_phases = \"abc\"\n".to_owned(), three()] {
+        for sensor in 0..3 {
+            let change: fn(&mut PlantParams) = match sensor {
+                0 => |plant| plant.adc[0].amperes_per_count *= 2.0,
+                1 => |plant| plant.adc[1].amperes_per_count *= 2.0,
+                _ => |plant| plant.adc[2].amperes_per_count *= 2.0,
+            };
+            let broken = run_with(&sensors, &sensors, "kind = \"pdcc\"", 500.0, change);
+            assert_eq!(broken.fault, Some(Fault::CurrentSum), "{sensors}, {sensor}");
+        }
+    }
+}
+
+/// Each sensor's own gain is in the controller: twice as coarse a sensor leaves the torque as it is.
+#[test]
+fn sensors_of_different_gains_show_the_same_currents() {
+    let alike = run_on("", "", "kind = \"pdcc\"", 800.0);
+    for gains in [
+        "[\"20 mA/count\", \"35 mA/count\"]",
+        "[\"35 mA/count\", \"20 mA/count\"]",
+    ] {
+        let sensors = format!("adc_gain = {gains}\n");
+        let own = run_on(&sensors, &sensors, "kind = \"pdcc\"", 800.0);
+        let torque = own.torque / alike.torque;
+        assert!(
+            (torque - 1.0).abs() < 0.003,
+            "{gains}: {torque} times the torque"
         );
     }
 }

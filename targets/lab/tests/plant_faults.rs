@@ -122,7 +122,7 @@ fn read(plant: &mut Plant) -> [f64; 2] {
 /// A turning motor with a short and wide current sensors.
 fn shorted(short: Option<Short>) -> Plant {
     let mut params = motor();
-    params.adc = [AdcChannel::bipolar(16, 2000.0); 2];
+    params.adc = vec![AdcChannel::bipolar(16, 2000.0); 2];
     params.wiring.short = short;
     let mut plant = Plant::new(params, 0.3, 100.0).unwrap();
     plant.set_currents([5.0, -3.0]);
@@ -138,7 +138,7 @@ fn assert_reads(got: f64, want: f64) {
 fn through_two_shorted_phases_the_emf_drives_its_loop_although_all_legs_are_off() {
     let mut params = motor();
     params.shape = EmfShape::Sinusoidal;
-    params.adc = [AdcChannel::bipolar(16, 2000.0); 2];
+    params.adc = vec![AdcChannel::bipolar(16, 2000.0); 2];
     params.wiring.short = Some(Short::Legs([1, 2]));
     let mut plant = Plant::new(params, 0.3, 100.0).unwrap();
     let mut largest = 0.0_f64;

@@ -427,7 +427,7 @@ fn free_shaft_coasts_to_rest_and_yields_to_external_torque() {
 #[test]
 fn samples_show_quantised_currents_codes_and_time_since_the_edge() {
     let mut params = motor();
-    params.adc = [
+    params.adc = vec![
         AdcChannel {
             amperes_per_count: 0.02,
             ..AdcChannel::bipolar(12, 40.0)

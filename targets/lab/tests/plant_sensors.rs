@@ -12,7 +12,7 @@ const N: u16 = 1800;
 /// A motor without EMF whose second channel, of phase b, is sampled at `instant` (second).
 fn motor(instant: f64) -> PlantParams {
     let mut params = PlantParams::ideal(4, R, L, 0.0, V, T_S);
-    params.adc = [AdcChannel::bipolar(16, 40.0); 2];
+    params.adc = vec![AdcChannel::bipolar(16, 40.0); 2];
     params.adc[1].instant = instant;
     params
 }

@@ -349,6 +349,22 @@ impl Spec {
         Ok(spec)
     }
 
+    /// Whether the highest of three pulsed legs is left unread where it is too high.
+    ///
+    /// # Errors
+    /// As [`Inverter::largest_compare`].
+    pub fn spares_highest(&self) -> Result<bool, Error> {
+        let mode = match &self.controller {
+            Controller::Pdcc(pdcc) => pdcc.common_mode,
+            Controller::PiPwm(pi_pwm) => pi_pwm.common_mode,
+            Controller::PPwm(p_pwm) => p_pwm.common_mode,
+            Controller::FcsMpc(_) | Controller::Phcc(_) => CommonMode::Centred,
+        };
+        let inverter = &self.inverter;
+        let is_higher = inverter.highest_compare()? > inverter.largest_compare()?;
+        Ok(mode != CommonMode::Centred && is_higher)
+    }
+
     /// The options of all controllers.
     pub fn loop_options(&self) -> LoopOptions {
         match &self.controller {

@@ -49,6 +49,8 @@ fn with_lines(lines: &str, other: &str) -> String {
             (Some(at), _) if !added.contains(&name) => all[at] = line,
             (Some(at), _) => all.insert(at, line),
             (None, Some(section)) => {
+                // One of two that say the same.
+                all.retain(|there| name != "adc_gain" || !there.starts_with("adc_range"));
                 let head = all
                     .iter()
                     .position(|there| *there == format!("[{section}]"));

@@ -46,9 +46,9 @@ fn the_largest_readable_duty_follows_from_the_window() {
             2e-6,
             1656,
         ),
-        // Of three sensors two are read.
+        // Of three phases two are converted at once.
         (
-            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"2 us\"\nsensed_phases = \"abc\"",
+            "dead_time = \"500 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"2 us\"\nsensed_phases = \"abc\"\ncurrent_adcs = 2",
             1.5e-6,
             2.2e-6,
             // 79.2 counts on either side, rounded up.
@@ -65,6 +65,29 @@ fn the_largest_readable_duty_follows_from_the_window() {
         assert_eq!(inverter.readable_top(), top, "{lines}");
         assert_eq!(inverter.largest_compare(), 1800, "{lines}");
     }
+}
+
+/// The sensor of the highest leg need not be read at the end of its period, but at the beginning of the next.
+#[test]
+fn of_three_sensors_that_of_the_highest_leg_is_spared() {
+    let tops = |lines: &str| {
+        let inverter = with_lines(&format!(
+            "adc_range = \"40 A\"\ncurrent_sensing = \"low_side\"\naperture_time = \"200 ns\"\n\
+             dead_time = \"500 ns\"\nsettling_time = \"1 us\"\n{lines}\n"
+        ));
+        [inverter.highest_top(), inverter.readable_top()]
+    };
+    // 0.2, 0.7 and 1.2 us of 25 us, against 1.5 us.
+    let three = "conversion_time = \"500 ns\"\nsensed_phases = \"abc\"";
+    assert_eq!(tops(three), [1713, 1692]);
+    assert_eq!(tops(&format!("{three}\ncurrent_adcs = 2")), [1749, 1692]);
+    assert_eq!(tops(&format!("{three}\ncurrent_adcs = 3")), [1785, 1692]);
+    assert_eq!(tops("conversion_time = \"500 ns\""), [1692; 2]);
+    // The conversions take longer: all three are read.
+    assert_eq!(
+        tops("conversion_time = \"2 us\"\nsensed_phases = \"abc\""),
+        [1497; 2]
+    );
 }
 
 #[test]

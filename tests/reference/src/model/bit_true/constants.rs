@@ -345,7 +345,8 @@ impl<W: Word> Constants<W> {
             k_third: scale.only_if(
                 (floating && variant.applied())
                     || variant.modulated == Switch::On
-                    || saturation.is_some_and(|rule| rule != Saturation::KeepAngle),
+                    || saturation.is_some_and(|rule| rule != Saturation::KeepAngle)
+                    || spec.spares_highest()?,
                 "k_third",
                 1.0 / 3.0,
             )?,
