@@ -731,6 +731,15 @@ static inline bool hexagen_is_sum_off(
     return limits->third.sum_samples != 0U && supervisor->sum_count == limits->third.sum_samples;
 }
 
+/** A sensor's phase current, of a count within the ADC's range. */
+static inline int32_t hexagen_measured(const hexagen_supervisor *supervisor,
+    const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
+{
+    const uint16_t read = hexagen_count(limits, sample, sensor);
+    const uint16_t count = (read < limits->adc_max) ? read : limits->adc_max;
+    return hexagen_current(limits, sensor, count, supervisor->offset[sensor]);
+}
+
 /** Counts such samples; true for as many as trip. */
 static inline bool hexagen_watch_sum(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample)
@@ -742,13 +751,9 @@ static inline bool hexagen_watch_sum(hexagen_supervisor *supervisor, const hexag
     if (supervisor->mode != HEXAGEN_MODE_RUN || most == 0U) {
         supervisor->sum_count = 0;
     } else if (hexagen_unread(supervisor, limits) == HEXAGEN_ALL_READ) {
-        uint32_t sum = 0;
-        uint16_t sensor;
-        for (sensor = 0; sensor < 3U; sensor++) {
-            const uint16_t read = hexagen_count(limits, sample, sensor);
-            const uint16_t count = (read < limits->adc_max) ? read : limits->adc_max;
-            sum += (uint32_t)hexagen_current(limits, sensor, count, supervisor->offset[sensor]);
-        }
+        const uint32_t sum = (uint32_t)hexagen_measured(supervisor, limits, sample, 0)
+            + (uint32_t)hexagen_measured(supervisor, limits, sample, 1)
+            + (uint32_t)hexagen_measured(supervisor, limits, sample, 2);
         if (!hexagen_exceeds(hexagen_wrap(sum), limits->third.sum_tolerance)) {
             supervisor->sum_count = 0;
         } else if (supervisor->sum_count < most) {
@@ -760,6 +765,14 @@ static inline bool hexagen_watch_sum(hexagen_supervisor *supervisor, const hexag
     return hexagen_is_sum_off(supervisor, limits);
 }
 
+/** Whether a leg is low for long enough to be read at the end of its period. */
+static inline bool hexagen_is_read(
+    const hexagen_limits *limits, const hexagen_legs *legs, uint16_t leg)
+{
+    return legs->state[leg] == HEXAGEN_LEG_LOW
+        || (legs->state[leg] == HEXAGEN_LEG_PULSED && legs->compare[leg] <= limits->third.readable);
+}
+
 /**
  * Follows the legs of a period, of which some may be read at its end and others not. Periods that
  * rest are followed there.
@@ -767,14 +780,14 @@ static inline bool hexagen_watch_sum(hexagen_supervisor *supervisor, const hexag
 static inline void hexagen_follow_legs(
     hexagen_supervisor *supervisor, const hexagen_limits *limits, const hexagen_legs *legs)
 {
-    uint32_t leg = 0;
+    uint32_t leg;
     if (!limits->third.is_low_side) {
         return;
     }
-    while (leg < HEXAGEN_ALL_READ && legs->state[leg] != HEXAGEN_LEG_OFF
-        && (legs->state[leg] == HEXAGEN_LEG_LOW || legs->compare[leg] <= limits->third.readable)) {
-        leg++;
-    }
+    leg = !hexagen_is_read(limits, legs, 0) ? 0U
+        : !hexagen_is_read(limits, legs, 1) ? 1U
+        : !hexagen_is_read(limits, legs, 2) ? 2U
+                                            : HEXAGEN_ALL_READ;
     supervisor->unread = limits->third.is_delayed
         ? (uint16_t)(((uint32_t)supervisor->unread >> 2) | (leg << 2))
         : (uint16_t)leg;

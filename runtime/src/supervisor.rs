@@ -59,9 +59,9 @@ impl Limits {
         let [first, second, third] = sensors.all(self);
         let (one, other) = (
             self.range(first),
-            wider(self.range(second), self.range(third)),
+            Self::wider(self.range(second), self.range(third)),
         );
-        let [low, high] = wider(one, other);
+        let [low, high] = Self::wider(one, other);
         let sum = (self.adc_max as i64) << (self.calibration_log2 & 15);
         // The phase that is not read has the negative sum of two currents; three are added, too.
         let word = 0x7fff_ffff;
@@ -75,7 +75,7 @@ impl Limits {
             && self.includes(first)
             && self.includes(second)
             && self.includes(third)
-            && sensors.are_sound()
+            && Self::are_sound(sensors)
             && self.trip > 0
             && self.stall_periods >= 0
             && self.stall_periods < word as i32
@@ -106,7 +106,42 @@ impl Limits {
         } else {
             [zero - high, top - low]
         };
-        [sensor.scaled(low), sensor.scaled(high)]
+        let ratio = sensor.ratio as i64;
+        let half = 1 << (Sensor::RATIO_BITS - 1);
+        // A ratio that is none is refused, whatever comes of it here.
+        [
+            low.wrapping_mul(ratio).wrapping_add(half) >> Sensor::RATIO_BITS,
+            high.wrapping_mul(ratio).wrapping_add(half) >> Sensor::RATIO_BITS,
+        ]
+    }
+
+    /// Whether ratios are in their range, and what is made of a third sensor is possible.
+    const fn are_sound(sensors: &Sensors) -> bool {
+        let second = match sensors.second {
+            None => true,
+            Some(second) => Self::has_ratio(second),
+        };
+        let third = match sensors.third {
+            None => true,
+            Some(third) => {
+                Self::has_ratio(third.sensor)
+                    && third.sum_tolerance >= 0
+                    && matches!(sensors.phases, SensedPhases::Ab)
+            }
+        };
+        second && third
+    }
+
+    const fn has_ratio(sensor: Sensor) -> bool {
+        sensor.ratio >= Sensor::ALIKE / 2 && sensor.ratio <= 2 * Sensor::ALIKE
+    }
+
+    /// The least and the greatest of two ranges.
+    const fn wider([low, high]: [i64; 2], [other_low, other_high]: [i64; 2]) -> [i64; 2] {
+        [
+            if low < other_low { low } else { other_low },
+            if high > other_high { high } else { other_high },
+        ]
     }
 
     /// Currents of the sensors' phases in words of current; `offsets` are words of current, too.
@@ -220,7 +255,7 @@ impl Sensor {
     /// Fraction bits of [`ratio`](Self::ratio).
     pub const RATIO_BITS: u32 = 15;
     /// The ratio of a sensor with the first one's gain.
-    pub const ALIKE: i32 = 1 << Self::RATIO_BITS;
+    pub const ALIKE: i32 = 0x8000;
 
     /// A phase current, of a count and an offset in words of current.
     #[inline]
@@ -235,15 +270,6 @@ impl Sensor {
         } else {
             mul_round(Word(self.ratio), current, Self::RATIO_BITS)
         }
-    }
-
-    /// A number of the first sensor's gain.
-    const fn scaled(self, current: i64) -> i64 {
-        (current * self.ratio as i64 + (1 << (Self::RATIO_BITS - 1))) >> Self::RATIO_BITS
-    }
-
-    const fn has_ratio(self) -> bool {
-        self.ratio >= Self::ALIKE / 2 && self.ratio <= 2 * Self::ALIKE
     }
 }
 
@@ -306,23 +332,6 @@ impl Sensors {
         };
         [one, second, third]
     }
-
-    /// Whether ratios are in their range, and a third sensor has its tolerance and no other name.
-    const fn are_sound(&self) -> bool {
-        let second = match self.second {
-            None => true,
-            Some(second) => second.has_ratio(),
-        };
-        let third = match self.third {
-            None => true,
-            Some(third) => {
-                third.sensor.has_ratio()
-                    && third.sum_tolerance >= 0
-                    && matches!(self.phases, SensedPhases::Ab)
-            }
-        };
-        second && third
-    }
 }
 
 /// The leg that a sample of three sensors in the low legs does not show.
@@ -362,14 +371,6 @@ impl Unread {
             Self::None
         }
     }
-}
-
-/// The least and the greatest of two ranges.
-const fn wider([low, high]: [i64; 2], [other_low, other_high]: [i64; 2]) -> [i64; 2] {
-    [
-        if low < other_low { low } else { other_low },
-        if high > other_high { high } else { other_high },
-    ]
 }
 
 /// Current of the phase that is not read.
@@ -777,9 +778,10 @@ impl Supervisor {
     pub fn rest(&mut self, limits: &Limits, sensors: &Sensors, sample: &Sample) -> (Checked, Rest) {
         let (checked, rest) = self.go_without(limits, sensors, sample);
         if let Rest::Legs(state) = rest {
-            let on = match state {
-                LegState::Off => None,
-                LegState::Low | LegState::Pulsed => Some(0),
+            let on = if state == LegState::Off {
+                None
+            } else {
+                Some(0)
             };
             self.follow_command(sensors, [on; 3]);
         }

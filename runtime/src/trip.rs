@@ -270,14 +270,14 @@ mod tests {
         let record = TripRecord::<Law>::new();
         let supervisor = Supervisor::new(&Law::LIMITS, &Law::SENSORS);
         let keep = |number| record.keep(&trip(number), &supervisor, &Kept(number));
-        let mut words = [0; SUPERVISOR + 1];
+        let mut words = [0; super::SUPERVISOR + 1];
         assert_eq!(record.read(&mut words), None);
         keep(1);
         assert_eq!(record.read(&mut words), Some(trip(1)));
-        assert_eq!((words[5], words[SUPERVISOR]), (2048, 1));
+        assert_eq!((words[5], words[super::SUPERVISOR]), (2048, 1));
         assert_eq!(record.read_while(|| keep(2)), None);
         assert_eq!(record.read(&mut words), Some(trip(2)));
-        assert_eq!(words[SUPERVISOR], 2);
+        assert_eq!(words[super::SUPERVISOR], 2);
         assert_eq!(record.read_while(|| record.forget()), None);
         assert_eq!(record.read(&mut words), None);
         // What interrupts the writer finds a number that says so.

@@ -179,9 +179,9 @@ fn the_period_of_a_trip_is_kept_until_a_reset() {
     for _ in 0..3 {
         drive.step(&sample(HALL));
     }
-    let mut words = [0; 15];
+    let mut words = [0; 24];
     assert_eq!(drive.trip(&mut words), None);
-    let mut before = [0; 15];
+    let mut before = [0; 24];
     drive.state_words(&mut before);
     let bad = Sample::with_hall([2048, 4000], 4)
         .hall_ticks(312)

@@ -32,9 +32,75 @@ drives! {
     OfCAndA { sensed_phases: ca, adc_inverted: on }
     Unlike { adc_inverted: [off, on], adc_offset: [2048, 1990] }
     UnlikeOfCAndA { sensed_phases: ca, adc_inverted: [on, off], adc_offset: [2100, 2011] }
+    Three { sensed_phases: abc, adc_offset: [2100, 2011, 2048] }
+    ThreeInLowLegs {
+        sensed_phases: abc,
+        current_sensing: low_side,
+        settling_time: 1 us,
+        aperture_time: 200 ns,
+        conversion_time: 400 ns,
+        current_adcs: 2,
+    }
 }
 
-verify!(OfBAndC, OfCAndA, Unlike, UnlikeOfCAndA);
+verify!(
+    OfBAndC,
+    OfCAndA,
+    Unlike,
+    UnlikeOfCAndA,
+    Three,
+    ThreeInLowLegs
+);
+
+hexagen::controller! {
+    /// Sensors of two gains.
+    pub UnlikeGains {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: trapezoidal,
+            rated_current: 20 A,
+            rated_speed: 1600 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_gain: [20 mA/count, 31 mA/count],
+        },
+        controller: pdcc,
+    }
+}
+
+verify!(UnlikeGains);
+
+/// Three sensors whose currents do not add up trip after the stated samples in a row, no sooner.
+#[test]
+fn three_currents_that_do_not_add_up_trip() {
+    let mut drive = Drive::<Three>::new();
+    // A start without Hall edges ends after its time.
+    let of = |c: u16| Sample::with_hall([2100, 2011], 0b101).third_current(c);
+    while !drive.status().is_running() {
+        drive.step(&of(2048));
+    }
+    for c in [2048 + 300, 2048 - 300] {
+        for _ in 0..19 {
+            drive.step(&of(c));
+        }
+        assert_eq!(drive.status().fault, None, "{c}");
+        drive.step(&of(2048));
+    }
+    for _ in 0..19 {
+        drive.step(&of(2348));
+    }
+    assert_eq!(drive.status().fault, None);
+    drive.step(&of(2348));
+    assert_eq!(drive.status().fault, Some(Fault::CurrentSum));
+}
 
 /// A sample of the three phases' currents, counts above the middle.
 fn sample([a, b, c]: [i32; 3]) -> Sample {

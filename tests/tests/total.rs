@@ -9,7 +9,8 @@ use hexagen::arith::{
 use hexagen::fixed::types::{I8F24, I16F16};
 use hexagen::{
     Bus, Command, Control, Drive, DynLoop, Fault, FixedBus, Format, Intervals, LegState, Legs,
-    Limits, Mode, Rounding, Sample, SensedPhases, Sensor, Sensors, Supervisor, ToldBus,
+    Limits, Mode, Rounding, Sample, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor,
+    ToldBus,
 };
 use proptest::prelude::*;
 use std::hint::black_box;
@@ -94,14 +95,43 @@ fn sensors() -> impl Strategy<Value = Sensors> {
         Just(SensedPhases::Bc),
         Just(SensedPhases::Ca)
     ];
-    let second = (any::<bool>(), any::<u16>(), any::<[u16; 2]>());
-    let second = second.prop_map(|(adc_inverted, offset, offsets)| Sensor {
+    let second = proptest::option::of(sensor());
+    let third = proptest::option::of(third_sensor());
+    (phases, second, third).prop_map(|(phases, second, third)| Sensors {
+        phases,
+        second,
+        third,
+    })
+}
+
+fn sensor() -> impl Strategy<Value = Sensor> {
+    let ratio = prop_oneof![Just(Sensor::ALIKE), 1 << 14..=1 << 16, any::<i32>()];
+    let values = (any::<bool>(), any::<u16>(), any::<[u16; 2]>(), ratio);
+    values.prop_map(|(adc_inverted, offset, offsets, ratio)| Sensor {
         adc_inverted,
         offset,
         offsets,
-    });
-    let second = proptest::option::of(second);
-    (phases, second).prop_map(|(phases, second)| Sensors { phases, second })
+        ratio,
+    })
+}
+
+fn third_sensor() -> impl Strategy<Value = ThirdSensor> {
+    let values = (
+        sensor(),
+        any::<Option<u16>>(),
+        any::<bool>(),
+        any::<i32>(),
+        any::<u16>(),
+    );
+    values.prop_map(
+        |(sensor, readable, is_delayed, sum_tolerance, sum_samples)| ThirdSensor {
+            sensor,
+            readable,
+            is_delayed,
+            sum_tolerance,
+            sum_samples,
+        },
+    )
 }
 
 /// Limits that may be invalid.
@@ -302,6 +332,9 @@ proptest! {
         for (sample, is_demanded, call) in samples {
             if supervisor.check(&limits, &sensors, &sample, || is_demanded).is_none() {
                 black_box(supervisor.rest(&limits, &sensors, &sample));
+            } else {
+                let [a, b, c] = sample.adc();
+                supervisor.follow_command(&sensors, [Some(a), Some(b), (c != 0).then_some(c)]);
             }
             match call {
                 0 => supervisor.calibrate(&limits),

@@ -1,7 +1,7 @@
 //! Every count of every ADC at the ends and in the middle of the offsets, every Hall code, every
 //! order of faults, and contradictory limits.
 
-use super::{Limits, Rest, Sensors, Supervisor, Turn};
+use super::{Limits, Rest, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor, Turn};
 use crate::arith::Word;
 use crate::{Fault, LegState, Mode, Sample};
 
@@ -902,6 +902,67 @@ fn contradictory_limits_do_not_hold() {
             assert!(!planted.hold(&Sensors::AB), "{what}: {planted:?}");
         }
     }
+}
+
+/// Sensors that contradict these limits, or themselves.
+#[test]
+fn contradictory_sensors_do_not_hold() {
+    let limits = ALL[0];
+    let sensor = Sensor {
+        adc_inverted: limits.adc_inverted,
+        offset: limits.offset,
+        offsets: limits.offsets,
+        ratio: Sensor::ALIKE,
+    };
+    let third = ThirdSensor {
+        sensor,
+        readable: None,
+        is_delayed: true,
+        sum_tolerance: 0,
+        sum_samples: 1,
+    };
+    // Three currents are added: a fraction bit less.
+    let limits = Limits {
+        current_bits: limits.current_bits - 1,
+        trip: limits.trip / 2,
+        currents: limits.currents.map(|current| current / 2),
+        ..limits
+    };
+    let sound = Sensors {
+        phases: SensedPhases::Ab,
+        second: Some(sensor),
+        third: Some(third),
+    };
+    assert!(limits.hold(&sound));
+    let with_third = |change: fn(&mut ThirdSensor)| {
+        let mut changed = third;
+        change(&mut changed);
+        Sensors {
+            third: Some(changed),
+            ..sound
+        }
+    };
+    let with_second = |ratio| Sensors {
+        second: Some(Sensor { ratio, ..sensor }),
+        ..sound
+    };
+    for wrong in [
+        Sensors {
+            phases: SensedPhases::Bc,
+            ..sound
+        },
+        with_third(|third| third.sum_tolerance = -1),
+        with_third(|third| third.sensor.ratio = Sensor::ALIKE / 2 - 1),
+        with_third(|third| third.sensor.offsets[1] += 1),
+        with_third(|third| third.sensor.offset = third.sensor.offsets[0] - 1),
+        with_second(2 * Sensor::ALIKE + 1),
+        // The limits hold the currents of equal gains.
+        with_second(Sensor::ALIKE + 100),
+    ] {
+        assert!(!limits.hold(&wrong), "{wrong:?}");
+    }
+    // Half the gain reaches less far.
+    assert!(limits.hold(&with_second(Sensor::ALIKE / 2)));
 }
 
 /// The most fraction bits that fit, and one more with consistent limits.

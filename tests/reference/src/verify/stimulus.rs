@@ -166,15 +166,21 @@ impl Stimulus {
         self.pending = Legs::OFF;
         self.start_up = (self.startup_steps + 2).min(START_UP);
         let tolerance = self.offset_tolerance;
-        self.true_offset = self.nominal_offset.map(|nominal| {
+        let sensors = self.sensed.phases().len();
+        for (offset, nominal) in self
+            .true_offset
+            .iter_mut()
+            .zip(self.nominal_offset)
+            .take(sensors)
+        {
             let distance = match self.random.u8(..4) {
                 0 => tolerance + self.random.i32(-2..=2),
                 1 => tolerance - self.random.i32(0..=tolerance / 8),
                 _ => self.random.i32(0..=tolerance),
             };
             let sign = if self.random.bool() { 1 } else { -1 };
-            nominal + sign * distance
-        });
+            *offset = nominal + sign * distance;
+        }
     }
 
     /// The next call, if any, and the next sample.
@@ -223,8 +229,11 @@ impl Stimulus {
 
     /// A motor without current, its ADCs at their true offsets.
     fn at_rest(&mut self) -> Sample {
-        let noise = [0; 3].map(|_: i32| self.random.i32(-1..=1));
-        let counts = [0, 1, 2].map(|x| self.adc(self.true_offset[x] + noise[x]));
+        let mut counts = [0; 3];
+        for sensor in 0..self.sensed.phases().len() {
+            let noise = self.random.i32(-1..=1);
+            counts[sensor] = self.adc(self.true_offset[sensor] + noise);
+        }
         self.sensed
             .sample(counts, self.codes[self.sector])
             .hall_ticks(u16::MAX)
@@ -373,8 +382,11 @@ impl Stimulus {
         let (hall, hall_ticks) = self.wandering_hall();
         let dice = self.random.u32(..);
         let counts = match dice & 0x7f {
-            0 => [0; 3].map(|_: u16| self.random.u16(..)),
-            1 => [0; 3].map(|_: u16| self.random.i32(0..=self.adc_max) as u16),
+            0 => self.any_counts(|random| random.u16(..)),
+            1 => {
+                let most = self.adc_max;
+                self.any_counts(|random| random.i32(0..=most) as u16)
+            }
             _ => {
                 // All three currents within the trip level.
                 let trip = self.trip_counts;
@@ -384,6 +396,15 @@ impl Stimulus {
             }
         };
         self.sensed.sample(counts, hall).hall_ticks(hall_ticks)
+    }
+
+    /// A count of each sensor.
+    fn any_counts(&mut self, count: impl Fn(&mut Rng) -> u16) -> [u16; 3] {
+        let mut counts = [0; 3];
+        for place in counts.iter_mut().take(self.sensed.phases().len()) {
+            *place = count(&mut self.random);
+        }
+        counts
     }
 
     /// Counts of currents in counts of the first sensor; of unlike sensors they move to different sides, or as far.
@@ -437,7 +458,11 @@ impl Stimulus {
                 _ => offset + near,
             }
         };
-        let [first, second, mut third] = context.offset.map(&mut corner);
+        let (first, second) = (corner(context.offset[0]), corner(context.offset[1]));
+        let mut third = 0;
+        if self.sensed == SensedPhases::Abc {
+            third = corner(context.offset[2]);
+        }
         if self.sensed == SensedPhases::Abc && self.random.u8(..4) != 0 {
             // Mostly the three currents add up.
             let current = |count: i32, x: usize| {
