@@ -5,7 +5,8 @@ use super::start::start_rpm;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, rpm, significant};
 use crate::spec::{
-    BusCurrents, BusSource, CurrentSensor, HallCapture, InverterSpec, SensedPhases, Spec,
+    BusCurrents, BusSource, CurrentSensor, CurrentSum, HallCapture, InverterSpec, SensedPhases,
+    Spec,
 };
 use std::f64::consts::FRAC_PI_3;
 
@@ -34,23 +35,48 @@ fn sensors(inverter: &InverterSpec) -> String {
     let all = inverter.sensors();
     let gain = engineering(inverter.adc_gain.abs(), "A");
     let way = |sensor: &CurrentSensor| if sensor.gain < 0.0 { "fall" } else { "rise" };
-    let [x, y, _] = named_phases(inverter);
-    let (first, second) = (&all[0], &all[1]);
-    if first == second {
-        let [x, y] = if x < y { [x, y] } else { [y, x] };
+    let named = named_phases(inverter);
+    let first = all[0];
+    let start = "Phase currents are positive into the motor";
+    if all.iter().all(|sensor| *sensor == first) {
+        let mut sensed = named[..all.len()].to_vec();
+        sensed.sort_unstable();
+        let (last, others) = (sensed.pop().unwrap_or_default(), sensed.join(", "));
         return format!(
-            "Phase currents are positive into the motor; the counts of phases {x} and {y} {} with the current, {gain} each, from {} at zero",
-            way(first),
+            "{start}; the counts of phases {others} and {last} {} with the current, {gain} each, from {} at zero",
+            way(&first),
             first.offset
         );
     }
+    let of_each = all.iter().zip(named).map(|(sensor, phase)| {
+        let gain = engineering(sensor.gain.abs(), "A");
+        let way = way(sensor);
+        format!(
+            "of phase {phase} {way} with the current from {} at zero, {gain} each",
+            sensor.offset
+        )
+    });
     format!(
-        "Phase currents are positive into the motor, {gain} each count; those of phase {x} {} with the current from {}, of phase {y} {} from {} at zero",
-        way(first),
-        first.offset,
-        way(second),
-        second.offset
+        "{start}; the counts {}",
+        of_each.collect::<Vec<_>>().join(", ")
     )
+}
+
+/// What a drive makes of three currents.
+fn three_sensors(inverter: &InverterSpec) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    if let Some(top) = inverter.readable_at_end() {
+        lines.push(format!(
+            "A leg that is off, or whose compare value is above {top}, is not read at the end of its period: its current is the rest of the other two."
+        ));
+    }
+    if let Some(CurrentSum { tolerance, samples }) = inverter.current_sum {
+        lines.push(format!(
+            "Where all three currents are read, a sum above {} in {samples} samples in a row trips the drive.",
+            engineering(tolerance, "A")
+        ));
+    }
+    lines
 }
 
 /// Signs, sectors, and the sensors' scales.
@@ -73,12 +99,14 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         String::new(),
         "More: `hexagen::conventions`.".to_owned(),
     ];
-    if inverter.sensed_phases != SensedPhases::Ab {
-        let [x, y, z] = named_phases(inverter);
-        lines.extend([
+    let [x, y, z] = named_phases(inverter);
+    match inverter.sensed_phases {
+        SensedPhases::Ab => {}
+        SensedPhases::Abc => lines.extend(three_sensors(inverter)),
+        SensedPhases::Bc | SensedPhases::Ca => lines.extend([
             String::new(),
             format!("The current of phase {z}, which has no sensor, is -(i_{x} + i_{y}); its count in the sample is ignored."),
-        ]);
+        ]),
     }
     if let HallCapture::Timer { ticks } = inverter.hall_capture {
         lines.extend([
