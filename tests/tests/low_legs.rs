@@ -30,14 +30,65 @@ const COMMON_MODES: [&str; 4] = [
     "common_mode = \"clamped_low\"",
 ];
 
+/// Whole vectors, which any board reads: no leg is off.
+const VECTORS: [&str; 12] = [
+    "kind = \"fcs-mpc\"",
+    "kind = \"fcs-mpc\"\nemf = \"held\"",
+    "kind = \"fcs-mpc\"\nemf = \"model\"\nword = 16",
+    "kind = \"fcs-mpc\"\ndelay = 0\nmodulated = \"on\"",
+    "kind = \"fcs-mpc\"\nmodulated = \"on\"\nemf = \"held\"",
+    "kind = \"fcs-mpc\"\nswitching_weight = \"0.4 A\"",
+    "kind = \"fcs-mpc\"\ntorque_weight = 1.7",
+    "kind = \"fcs-mpc\"\nswitching_weight = \"0.4 A\"\ntorque_weight = 0.6",
+    "kind = \"fcs-mpc\"\nhorizon = 2\nemf = \"observer\"",
+    "kind = \"phcc\"",
+    "kind = \"phcc\"\nemf = \"held\"",
+    "kind = \"phcc\"\ndelay = 0",
+];
+
+/// Candidates, with more settings, of vectors that turn a leg off.
+const OFF: [&str; 4] = [
+    "candidates = \"table2\"",
+    "candidates = \"table2\"\noff_leg = \"nominal\"",
+    "candidates = \"all\"",
+    "candidates = \"all\"\noff_leg = \"nominal\"",
+];
+const CHOICES: [&str; 4] = [
+    "",
+    "modulated = \"on\"",
+    "switching_weight = \"0.4 A\"",
+    "switching_weight = \"0.4 A\"\ntorque_weight = 0.6",
+];
+
+/// Controllers that leave legs without sensors off.
+fn turning_off() -> Vec<String> {
+    let choices =
+        |off: &'static str| CHOICES.map(|choice| format!("kind = \"fcs-mpc\"\n{off}\n{choice}"));
+    let of_table2 = OFF[..2].iter().map(|off| format!("kind = \"phcc\"\n{off}"));
+    OFF.into_iter().flat_map(choices).chain(of_table2).collect()
+}
+
 fn each_drive(check: impl Fn(&str, &str)) {
-    let measured = format!("{LOW_SIDE}{BUS}");
+    let [measured, bootstrap] = [LOW_SIDE, BOOTSTRAP].map(|legs| format!("{legs}{BUS}"));
+    let check = |inverter: &str, controller: &str| {
+        let text = specification(inverter, controller);
+        check(&format!("{inverter}{controller}"), &text);
+    };
     for inverter in ["", LOW_SIDE, BOOTSTRAP, &measured] {
         for controller in CONTROLLERS {
             for common_mode in COMMON_MODES {
-                let text = specification(inverter, &format!("{controller}\n{common_mode}"));
-                check(&format!("{inverter}{controller}\n{common_mode}"), &text);
+                check(inverter, &format!("{controller}\n{common_mode}"));
             }
+        }
+    }
+    for inverter in [LOW_SIDE, &measured] {
+        for controller in VECTORS {
+            check(inverter, controller);
+        }
+    }
+    for inverter in [BOOTSTRAP, &bootstrap] {
+        for controller in turning_off() {
+            check(inverter, &controller);
         }
     }
 }

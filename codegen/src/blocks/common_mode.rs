@@ -3,7 +3,7 @@
 use super::modulate::half_period;
 use super::{Bus, Lowering};
 use crate::ir::{Phases, named};
-use crate::spec::CommonMode;
+use crate::spec::{BusSource, CommonMode};
 
 /// Legs of which each is low for a while in every period.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ impl CommonModeRule {
         };
         let share = f64::from(counts) / f64::from(self.period);
         let doc = "Share of the bus that legs reach which must be low for a while.";
-        let volts = if bus.ratio.is_none() {
+        let volts = if let BusSource::Fixed = l.spec.inverter.bus {
             let doc = format!(
                 "Voltage that legs reach which must be low for a while: {counts} timer counts, words of voltage."
             );
