@@ -99,7 +99,8 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
     let inverter = &spec.inverter;
     let mut errors = Collector::new();
-    if spec.controller.common_mode().is_none() {
+    let is_pulsed = law(&spec.controller).period() == Period::Pulses;
+    if is_pulsed && spec.controller.common_mode().is_none() {
         let held = [
             (
                 "current_sensing",
@@ -213,7 +214,8 @@ fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
 /// A vector that lasts a whole period must not change the current by more than the rated current.
 fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let stride = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
+    let high = inverter.greatest_bus() * inverter.reach_share();
+    let stride = design.plant.gain * 2.0 / 3.0 * high;
     if stride > motor.rated_current {
         let at = origins.at("controller.kind");
         let longest = |gain| {
@@ -234,7 +236,7 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
 /// triangle's centre from its edges.
 fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let side = 2.0 / 3.0 * inverter.greatest_bus();
+    let side = 2.0 / 3.0 * inverter.greatest_bus() * inverter.reach_share();
     let miss = design.plant.gain * side / 12_f64.sqrt();
     if miss > motor.rated_current {
         let at = origins.at("controller.modulated");

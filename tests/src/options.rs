@@ -164,6 +164,23 @@ const SHARED: &[Row] = &[
         ],
     ),
     (
+        // For how long a leg must be low.
+        "legs",
+        &[
+            ("free", &[]),
+            (
+                "sensed",
+                &[
+                    ("inverter", "current_sensing", "\"low_side\""),
+                    ("inverter", "settling_time", "\"1 us\""),
+                    ("inverter", "aperture_time", "\"200 ns\""),
+                    ("inverter", "conversion_time", "\"400 ns\""),
+                ],
+            ),
+            ("bootstrap", &[("inverter", "minimum_low_time", "\"4 us\"")]),
+        ],
+    ),
+    (
         "v_bus",
         &[
             ("fixed", &[]),

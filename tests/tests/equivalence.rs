@@ -28,6 +28,8 @@ const STEPS: u64 = 10_000_000;
 /// generator's diagnostics.
 const WITHOUT_EFFECT: &[&str] = &[
     "fcs-mpc candidates=three_phase off_leg=nominal",
+    "fcs-mpc candidates=all legs=sensed",
+    "fcs-mpc off_leg=nominal legs=sensed",
     "fcs-mpc choice=torque emf=held",
     "fcs-mpc choice=weighted emf=held",
     "fcs-mpc choice=two_steps emf=held",
@@ -37,12 +39,17 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pdcc modulation=pair common_mode=clamped_low",
     "pdcc modulation=pair reference=proportional",
     "pdcc modulation=pair emf=held",
+    "pdcc modulation=pair legs=sensed",
+    "pdcc modulation=pair legs=bootstrap",
     "pdcc reference=proportional advance=1.5",
     "pdcc reference=proportional advance=2",
     "phcc candidates=three_phase off_leg=nominal",
     "phcc candidates=three_phase table=printed",
     "phcc candidates=three_phase table=given",
     "phcc off_leg=nominal delay=0",
+    "phcc off_leg=nominal legs=sensed",
+    "phcc table=printed legs=sensed",
+    "phcc table=given legs=sensed",
     "phcc emf=estimated delay=0",
     "phcc emf=unfiltered delay=0",
     "phcc emf=model delay=0",
@@ -65,6 +72,8 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pi-pwm six_step=on emf=model",
     "pi-pwm six_step=on emf=observer",
     "pi-pwm six_step=on emf=watched",
+    "pi-pwm six_step=on legs=sensed",
+    "pi-pwm six_step=on legs=bootstrap",
     "pi-pwm reference=proportional advance=1.5",
     "pi-pwm reference=proportional advance=2",
 ];
@@ -188,11 +197,16 @@ fn every_pair_of_option_values_is_compiled() {
     );
     let (refused, codes): (Vec<&str>, Vec<&str>) = rest.into_iter().unzip();
     assert_eq!(refused, WITHOUT_EFFECT);
-    // Two legs cannot drive three currents; all other rejections are for lack of effect.
+    // Two legs cannot drive three currents, an off leg cannot be read, and a pair holds legs high; all other
+    // rejections are for lack of effect.
     let three_currents = "pdcc modulation=pair reference=proportional";
     for (what, codes) in refused.iter().zip(codes) {
         let expected = if *what == three_currents {
             "HX0111"
+        } else if what.ends_with("legs=bootstrap") {
+            "HX0410"
+        } else if what.ends_with("legs=sensed") && !what.contains("off_leg=nominal") {
+            "HX0409"
         } else {
             "HX0404"
         };

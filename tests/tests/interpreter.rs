@@ -22,8 +22,13 @@ const MOST_OF_A_PRODUCT: usize = 5_000;
 const SAMPLE: usize = 24;
 const SAMPLE_STEPS: u64 = 2_000;
 
-/// Codes of options that exclude each other.
-const RULED_OUT: [&str; 2] = ["DependentField", "OptionWithoutEffect"];
+/// Codes of options that exclude each other, and of boards whose legs exclude an option.
+const RULED_OUT: [&str; 4] = [
+    "DependentField",
+    "OptionWithoutEffect",
+    "UnreadableLeg",
+    "LegsHeldHigh",
+];
 
 /// Results of many drives.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use super::limit::within_bus;
 use super::modulate::half_period;
 use super::{Bus, Limited, Lowering};
 use crate::ir::{Coefficient, Expr, Flag, Named, Phases, named};
-use crate::spec::CommonMode;
+use crate::spec::{BusSource, CommonMode};
 
 /// Legs of which each is low for a while in every period.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +33,15 @@ impl CommonModeRule {
                 CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_top(),
             },
             second: readable,
+        }
+    }
+
+    /// Whole vectors: their high legs are pulsed, all alike, and one leg is low throughout.
+    pub fn of_vectors(l: &Lowering<'_>) -> Self {
+        let top = l.spec.inverter.readable_top();
+        Self {
+            top,
+            ..Self::new(l, CommonMode::ClampedLow)
         }
     }
 
@@ -83,7 +92,7 @@ impl CommonModeRule {
         counts: u32,
         [k_name, v_name, whose]: [&'static str; 3],
     ) -> Expr<'b> {
-        if bus.ratio.is_none() {
+        if let BusSource::Fixed = l.spec.inverter.bus {
             let doc = format!("Voltage that {whose}: {counts} timer counts, words of voltage.");
             let value = i64::from(counts) << l.scale.voltage_bits;
             return l.number(v_name, value, &doc);

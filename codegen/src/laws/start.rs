@@ -75,9 +75,15 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
         ..design.clone()
     };
     let start = law.start(slow);
-    let met = most.min(start.part_of_bus * inverter.lowest_bus() / line);
+    let is_pulsed = law.period() == Period::Pulses;
+    let reach = if is_pulsed {
+        1.0
+    } else {
+        inverter.reach_share()
+    };
+    let met = most.min(start.part_of_bus * reach * inverter.lowest_bus() / line);
     let periods = f64::from(options.delay + 1);
-    let vector = design.plant.gain * 2.0 / 3.0 * inverter.greatest_bus();
+    let vector = design.plant.gain * 2.0 / 3.0 * reach * inverter.greatest_bus();
     let per_volt = law
         .linear(spec, &resting)
         .map_or(design.plant.gain * periods, |linear| {

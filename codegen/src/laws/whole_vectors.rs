@@ -5,10 +5,12 @@
 //! the pattern of its low legs; a vector with hysteresis memory by a number for both.
 
 use super::current_loop::{CurrentLoop, Front, Held, LeftOver, Remembered};
-use crate::blocks::{Applied, Command, LOW, Lowering, OFF, PULSED};
+use crate::blocks::set_point::SetPointWords;
+use crate::blocks::{Applied, Command, CommonModeRule, LOW, Lowering, OFF, PULSED};
 use crate::design::vectors::{LegSigns, OFF_PHASE, THREE_PHASE, TWO_PHASE};
+use crate::diagnostics::{engineering, frequency, percent};
 use crate::ir::{Coefficient, Exact, Expr, Lut, Phases, named};
-use crate::spec::BusSource;
+use crate::spec::{BusSource, InverterSpec, Spec};
 
 /// Numbering of the vectors of [`CurrentLoop::apply_vector`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,9 +103,9 @@ pub(super) fn vector_legs() -> [LegSigns; 16] {
     legs
 }
 
-/// Zero-sum voltages of a leg pattern in sixths of the bus; an off leg counts as midway.
+/// Zero-sum voltages of a leg pattern in sixths of a high leg's voltage; an off leg counts as midway.
 pub(super) fn sixths(legs: LegSigns) -> LegSigns {
-    // Terminals in halves of the bus; v_x = t_x - mean, times 6: 3 t_x - (t_a + t_b + t_c).
+    // Terminals in halves of a high leg's voltage; v_x = t_x - mean, times 6: 3 t_x - (t_a + t_b + t_c).
     let high = legs.contains(&1);
     let terminals = legs.map(|sign| if high { sign + 1 } else { 0 });
     let sum: i32 = terminals.iter().sum();
@@ -123,11 +125,55 @@ struct Vector<'l, 'b> {
     l: &'l Lowering<'b>,
     /// Word of the arithmetic, bits.
     word: u32,
+    /// Voltage of a high leg.
+    reach: Expr<'b>,
     number: Expr<'b>,
     numbers: Numbers,
 }
 
+/// What a vector's voltage is a multiple of, in documentation.
+pub(super) fn whole(inverter: &InverterSpec) -> &'static str {
+    if inverter.readable_top() == inverter.timer_period {
+        "the bus"
+    } else {
+        "the voltage of a high leg"
+    }
+}
+
+/// Documentation of legs that are pulsed, where they must be low for a while.
+pub(super) fn pulsed_legs(spec: &Spec) -> Vec<String> {
+    let inverter = &spec.inverter;
+    let (top, period) = (inverter.readable_top(), inverter.timer_period);
+    if top == period {
+        return vec![];
+    }
+    let low = f64::from(period - top) / f64::from(period) * inverter.pwm_period();
+    vec![
+        format!(
+            "A high leg is pulsed with compare value {top}, so that it is low for {} of each PWM period: every vector has {} of its",
+            engineering(low, "s"),
+            percent(inverter.reach_share())
+        ),
+        format!(
+            "voltage, {} of a high leg at the nominal bus, and a high leg switches with the PWM, at {}. Where stages compare",
+            engineering(inverter.v_bus * inverter.reach_share(), "V"),
+            frequency(1.0 / inverter.pwm_period())
+        ),
+        "vectors with parts of the bus, parts of a high leg's voltage are meant.".to_owned(),
+    ]
+}
+
 impl<'b> CurrentLoop<'_, 'b> {
+    /// Steps 1 to 8, and how far the legs of a vector reach: one of them is low throughout.
+    pub(super) fn front_of_vectors(&self, set_point: &SetPointWords<'b>) -> Front<'b> {
+        let front = self.front(set_point);
+        let rule = CommonModeRule::of_vectors(self.l);
+        Front {
+            reach: rule.reach(self.l, front.bus),
+            ..front
+        }
+    }
+
     /// Commands the legs of the chosen vector and closes the step.
     pub(super) fn apply_vector(
         &self,
@@ -139,10 +185,16 @@ impl<'b> CurrentLoop<'_, 'b> {
         let vector = Vector {
             l: self.l,
             word: self.options.word,
+            reach: front.reach.volts,
             number,
             numbers,
         };
-        let doc = "Legs of the chosen vector: a high leg is pulsed with a full compare value.";
+        let inverter = &self.l.spec.inverter;
+        let doc = if inverter.readable_top() == inverter.timer_period {
+            "Legs of the chosen vector: a high leg is pulsed with a full compare value."
+        } else {
+            "Legs of the chosen vector: a high leg is pulsed with the largest compare value."
+        };
         self.l.b.stage("drive_legs", &[doc]);
         let command = vector.command();
         let doc = "Terminals and off leg of the chosen vector, for later steps.";
@@ -154,8 +206,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             return;
         }
         let off_leg = self.needs.off_leg;
-        let v_cmd = (!off_leg).then(|| vector.voltage(front));
-        let applied = off_leg.then(|| vector.terminals(front));
+        let v_cmd = (!off_leg).then(|| vector.voltage());
+        let applied = off_leg.then(|| vector.terminals());
         self.remember(front, &command, v_cmd, applied, remembered);
     }
 }
@@ -176,7 +228,7 @@ fn over_vectors<'b>(
 /// Entries of a table over the vectors, phases a, b, c.
 type Volts = Vec<[i64; 3]>;
 
-/// Voltages of the vectors for a sixth of the bus of `unit` words.
+/// Voltages of the vectors for a sixth of a high leg's voltage of `unit` words.
 fn fixed_volts(numbers: Numbers, unit: i64) -> Volts {
     let legs = numbers.legs().into_iter();
     legs.map(|legs| sixths(legs).map(|share| i64::from(share) * unit))
@@ -202,16 +254,18 @@ impl<'b> Vector<'_, 'b> {
         })
     }
 
-    /// The coefficient 1/6: vector voltages are multiples of a sixth of the bus.
+    /// The coefficient 1/6: vector voltages are multiples of a sixth of a high leg's.
     fn k_sixth(&self) -> Coefficient {
-        let doc = "Unit of vector voltages: a sixth of the bus.";
+        let whole = whole(&self.l.spec.inverter);
+        let doc = format!("Unit of vector voltages: a sixth of {whole}.");
         self.l
-            .coefficient("k_sixth", 1.0 / 6.0, self.word, doc, "1/6")
+            .coefficient("k_sixth", 1.0 / 6.0, self.word, &doc, "1/6")
     }
 
-    /// A sixth of the fixed bus, words of voltage.
+    /// A sixth of the voltage of a high leg on a fixed bus, words of voltage.
     fn fixed_sixth(&self) -> i64 {
-        self.l.rounded_product(self.k_sixth(), self.l.nominal_bus())
+        self.l
+            .rounded_product(self.k_sixth(), self.reach.interval().high)
     }
 
     /// Contribution of the chosen vector's voltage to later steps, from tables; with a fixed bus
@@ -268,7 +322,7 @@ impl<'b> Vector<'_, 'b> {
     /// 0.
     fn command(&self) -> Command<'b> {
         let l = self.l;
-        let top = l.spec.inverter.timer_period as i32;
+        let top = l.spec.inverter.readable_top() as i32;
         let meaning = self.numbers.meaning();
         named! {
             let compare_chosen = Phases::each(|x| {
@@ -309,16 +363,17 @@ impl<'b> Vector<'_, 'b> {
     }
 
     /// Zero-sum voltage of the chosen vector, phases a and b.
-    fn voltage(&self, front: &Front<'b>) -> Phases<'b> {
+    fn voltage(&self) -> Phases<'b> {
         if let BusSource::Fixed = self.l.spec.inverter.bus {
             return self.fixed_voltage();
         }
         named! {
-            let sixth_of_bus = self.k_sixth() * front.bus.volts;
+            let sixth_of_bus = self.k_sixth() * self.reach;
             let v_chosen = Phases::each(|x| {
                 let name = ["sixths_a", "sixths_b"][x];
-                let doc = "Phase voltage of the vector, sixths of the bus.";
-                self.at(name, doc, |legs| sixths(legs)[x]) * sixth_of_bus
+                let whole = whole(&self.l.spec.inverter);
+                let doc = format!("Phase voltage of the vector, sixths of {whole}.");
+                self.at(name, &doc, |legs| sixths(legs)[x]) * sixth_of_bus
             });
         }
         v_chosen
@@ -334,12 +389,12 @@ impl<'b> Vector<'_, 'b> {
     }
 
     /// Terminal voltages and off leg of the chosen vector.
-    fn terminals(&self, front: &Front<'b>) -> Applied<'b> {
+    fn terminals(&self) -> Applied<'b> {
         named! {
             let t_chosen = Phases::each(|x| {
                 let name = ["high_a", "high_b", "high_c"][x];
                 let doc = "1 if the leg is high in the vector.";
-                self.at(name, doc, |legs| i32::from(legs[x] == 1)) * front.bus.volts
+                self.at(name, doc, |legs| i32::from(legs[x] == 1)) * self.reach
             });
             let off_chosen = off_leg_table(self.l).at(self.number);
         }

@@ -152,6 +152,11 @@ impl InverterSpec {
         self.window().map(|window| self.counts_less(window.before))
     }
 
+    /// Share of the bus voltage that a leg with the largest readable compare value has.
+    pub fn reach_share(&self) -> f64 {
+        f64::from(self.readable_top()) / f64::from(self.timer_period)
+    }
+
     /// Largest compare value of any leg: `timer_period`, less what `minimum_low_time` takes.
     pub fn largest_compare(&self) -> u32 {
         self.counts_less(self.minimum_low_time / 2.0)

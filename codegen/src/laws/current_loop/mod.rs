@@ -88,6 +88,9 @@ pub struct Front<'b> {
     pub third: Coefficient,
     /// The bus.
     pub bus: Bus<'b>,
+    /// The bus as far as a high leg of a whole vector reaches: less than the bus where each leg must be low for a
+    /// while.
+    pub reach: Bus<'b>,
     /// Voltage applied in the period that begins now; if the step needs it.
     pub now: Option<Phases<'b>>,
     /// EMF over the target period; if the law needs it.
@@ -202,6 +205,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             reference,
             third,
             bus,
+            reach: bus,
             now,
             e,
             e_now,

@@ -14,7 +14,7 @@ use super::score::{
 use crate::blocks::Lowering;
 use crate::ir::{Expr, Flag, Named, Phases, named};
 use crate::laws::current_loop::{CurrentLoop, Front};
-use crate::laws::whole_vectors::ALL_LOW;
+use crate::laws::whole_vectors::{ALL_LOW, whole};
 use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 
 const NEAREST_VECTOR: [&str; 3] = [
@@ -60,7 +60,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         named! {
             let u_largest = high.max(depth);
         }
-        let (three, is_low) = nearest_three_phase(l, u, u_largest, front.bus.volts);
+        let (three, is_low) = nearest_three_phase(l, u, u_largest, front.reach.volts);
         let off_legs = self.predict_off_legs(options, front, pair);
         if off_legs.is_none() {
             state_exact_scores(l, u);
@@ -112,7 +112,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
         l.b.guarded_stage("nearest_vector", commutating, false, &NEAREST_VECTOR);
         let largest = largest_of_zero_sum(u);
-        let (three, _) = nearest_three_phase(l, u, largest, front.bus.volts);
+        let (three, _) = nearest_three_phase(l, u, largest, front.reach.volts);
         let [vector] = l.b.join([("vector", three, vector_pair)]);
         vector
     }
@@ -124,7 +124,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let u = u.with_c("u_unsat");
         state_exact_scores(l, u);
         let (low_legs, _) = low_legs_of(u);
-        let beyond = is_beyond_third(l, largest_of_zero_sum(u), front.bus.volts);
+        let beyond = is_beyond_third(l, largest_of_zero_sum(u), front.reach.volts);
         named! {
             let pattern = beyond.choose(low_legs, ALL_LOW);
         }
@@ -142,7 +142,7 @@ pub(super) fn nearest_physical<'b>(
     changes: Option<&Changes<'b>>,
     three_phase: Option<Candidate<'b>>,
 ) -> Expr<'b> {
-    let bus = front.bus.volts;
+    let bus = front.reach.volts;
     let rival = match three_phase {
         Some(_) => "the three-phase vector",
         None => "the zero vector",
@@ -228,7 +228,7 @@ fn zero_products<'b>(
 ) -> (Expr<'b>, Products<'b>) {
     let (vector, is_off) = zero_of_pair(l, front.sector);
     let aside = off_legs.zero(u, is_off);
-    let change = changes.map(|changes| [front.bus.volts, changes.to_zero(is_off)]);
+    let change = changes.map(|changes| [front.reach.volts, changes.to_zero(is_off)]);
     let products = std::iter::once(aside).chain(change);
     (vector, Products(products.collect()))
 }
@@ -251,13 +251,13 @@ fn largest_of_zero_sum(u: Phases<'_, 3>) -> Expr<'_> {
     u_largest
 }
 
-/// Whether a magnitude exceeds a third of the bus. An integer exceeds the third exactly if it
+/// Whether a magnitude exceeds a third of a high leg's voltage. An integer exceeds the third exactly if it
 /// exceeds its integer part.
 fn is_beyond_third<'b>(l: &Lowering<'b>, largest: Expr<'b>, bus: Expr<'b>) -> Flag<'b> {
     match l.spec.inverter.bus {
         BusSource::Fixed => {
-            let third = l.nominal_bus() / 3;
-            let third = l.voltage("third_of_bus", third, "A third of the bus");
+            let doc = format!("A third of {}", whole(&l.spec.inverter));
+            let third = l.voltage("third_of_bus", bus.interval().high / 3, &doc);
             largest.is_above(third)
         }
         BusSource::Measured { .. } => {
@@ -269,11 +269,12 @@ fn is_beyond_third<'b>(l: &Lowering<'b>, largest: Expr<'b>, bus: Expr<'b>) -> Fl
     }
 }
 
-/// Whether a line voltage exceeds half the bus.
+/// Whether a line voltage exceeds half a high leg's voltage.
 fn any_beyond_half<'b>(l: &Lowering<'b>, lines: [Expr<'b>; 3], bus: Expr<'b>) -> Flag<'b> {
+    let doc = format!("Half {}", whole(&l.spec.inverter));
     let beyond = [0, 1, 2].map(|order| match l.spec.inverter.bus {
         BusSource::Fixed => {
-            let half = || l.voltage("half_bus", l.nominal_bus() / 2, "Half the bus");
+            let half = || l.voltage("half_bus", bus.interval().high / 2, &doc);
             lines[order].is_above(half()) | lines[order].is_below(-half())
         }
         BusSource::Measured { .. } => {
@@ -381,7 +382,7 @@ fn nearest_nominal<'b>(l: &Lowering<'b>, front: &Front<'b>, u: Phases<'b, 3>) ->
     let doc = "Pair vector by the order of the phase voltages: bit 0 a below b, bit 1 c below b, bit 2 a below c (two patterns do not occur).";
     let vectors = vec![8, 0, 9, 10, 7, 12, 0, 11];
     let table = l.b.table("pair_of_order", vectors, &[doc.to_owned()]);
-    let beyond = any_beyond_half(l, lines, front.bus.volts);
+    let beyond = any_beyond_half(l, lines, front.reach.volts);
     beyond.choose(table.at(order), idle)
 }
 
@@ -403,7 +404,7 @@ fn nearest_of_all<'b>(
         return three.vector;
     };
     // Scores over the bus: three-phase 4 V - 12 u or 0, pair 3 V - 6 line.
-    let bus = front.bus.volts;
+    let bus = front.reach.volts;
     named! {
         let line_largest = -best.score;
     }

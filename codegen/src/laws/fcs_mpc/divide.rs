@@ -28,9 +28,9 @@ impl<'b> CurrentLoop<'_, 'b> {
     /// Divides the period between the chosen vector and its partner, and closes the step.
     pub(super) fn apply_two_vectors(&self, front: &Front<'b>, choice: &Choice<'b>) {
         let l = self.l;
-        let three = nearest_edge(l, front.bus.volts, choice);
+        let three = nearest_edge(l, front.reach.volts, choice);
         let pair = front.commutation;
-        let pair = pair.map(|_| divide_pair(l, front.bus.volts, choice));
+        let pair = pair.map(|_| divide_pair(l, front, choice));
         let doc = "Share of the period for which each leg is high, as a voltage of the bus; without a sector all legs are low.";
         l.b.stage("share_period", &[doc]);
         named! {
@@ -91,7 +91,7 @@ fn nearest_edge<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Pha
 }
 
 /// The better vector with the chosen vector's leg off, for the time of the least error.
-fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> PulsedPair<'b> {
+fn divide_pair<'b>(l: &Lowering<'b>, front: &Front<'b>, choice: &Choice<'b>) -> PulsedPair<'b> {
     let [u_a, u_b, u_c] = choice.u.0;
     l.b.stage(
         "divide_pair",
@@ -123,12 +123,12 @@ fn divide_pair<'b>(l: &Lowering<'b>, bus: Expr<'b>, choice: &Choice<'b>) -> Puls
                 let off_outward = outward;
                 let u_pulsed = pair_is_back.choose(u_minus, u_plus);
             }
-            let held = u_pulsed + ((off_outward.choose(bus, 0) + u_pulsed) >> 1);
+            let held = u_pulsed + ((off_outward.choose(front.bus.volts, 0) + u_pulsed) >> 1);
             (inward | off_outward).choose(held, line_size)
         }
     };
     named! {
-        let t_pair = volts.clamp(0, bus);
+        let t_pair = volts.clamp(0, front.reach.volts);
         let pair_is_forward = !pair_is_back;
     }
     // Forward, a is high with b or c off, c with a off; backward, b is high with a or c off, c with

@@ -38,7 +38,7 @@ fn apply_best(step: &CurrentLoop<'_, '_>, options: &FcsMpcSpec, set_point: &SetP
     } else {
         Numbers::WithoutPairs
     };
-    let front = step.front(set_point);
+    let front = step.front_of_vectors(set_point);
     let u = step.deadbeat(&front, false).u;
     if let (2, Some(e)) = (options.horizon, front.e) {
         let vector = step.choose_two_steps(options, &front, e, u);

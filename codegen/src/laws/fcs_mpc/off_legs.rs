@@ -11,7 +11,7 @@ pub(super) struct OffLegs<'b> {
     bus: Expr<'b>,
     /// Per leg, whether its predicted current flows through a diode, inward or outward.
     pub conducting: [[Flag<'b>; 2]; 3],
-    /// Twice the terminal voltage beside a driven pair, less the bus.
+    /// Twice the terminal voltage beside a driven pair, less that of its high leg.
     pub offsets: Phases<'b, 3>,
     /// Floating terminal voltage above the driven legs' mean.
     lifts: Phases<'b, 3>,
@@ -48,7 +48,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let e = e.with_c("e_off");
         named! {
             let h = front.reference + e.pair() - u;
-            let half_bus_off = bus >> 1;
+            let half_bus_off = front.reach.volts >> 1;
             let lift = e.map(|e| e + (e >> 1));
         }
         let h = h.with_c("h");
@@ -64,7 +64,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         named! {
             let d = Phases::each(|x| {
                 let free = (half_bus_off + lift.0[x]).clamp(0, bus);
-                (at_rail(conducting[x], free, bus) << 1) - bus
+                (at_rail(conducting[x], free, bus) << 1) - front.reach.volts
             });
         }
         Some(OffLegs {

@@ -40,6 +40,7 @@ enum Torque<'b> {
 pub(super) struct Weighing<'l, 'b> {
     l: &'l Lowering<'b>,
     u: Phases<'b, 3>,
+    /// Voltage of a high leg.
     bus: Expr<'b>,
     off_legs: Option<&'l OffLegs<'b>>,
     changes: Option<&'l Changes<'b>>,
@@ -56,7 +57,7 @@ pub(super) struct Weighing<'l, 'b> {
 #[derive(Clone, Copy)]
 struct Beside<'b> {
     terminal: Expr<'b>,
-    /// Twice its terminal voltage less the bus; none if midway.
+    /// Twice its terminal voltage less that of the high leg; none if midway.
     offset: Option<Expr<'b>>,
 }
 
@@ -83,7 +84,7 @@ impl<'l, 'b> Weighing<'l, 'b> {
         Self {
             l,
             u,
-            bus: front.bus.volts,
+            bus: front.reach.volts,
             off_legs,
             changes,
             commutating: front.commutation.map(|commutation| commutation.flag),

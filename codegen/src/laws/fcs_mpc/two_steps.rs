@@ -14,6 +14,7 @@ use crate::spec::{BusSource, Candidates, FcsMpcSpec};
 struct Sequences<'l, 'b> {
     l: &'l Lowering<'b>,
     with_pairs: bool,
+    /// Voltage of a high leg.
     bus: Expr<'b>,
     /// (1 + a^2) V
     first: Expr<'b>,
@@ -55,7 +56,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             let y = reference + e + k_pole * (u - reference);
             let z = u + k_pole * y;
         }
-        let (y, z, bus) = (y.with_c("y"), z.with_c("z"), front.bus.volts);
+        let (y, z, bus) = (y.with_c("y"), z.with_c("z"), front.reach.volts);
         let sequences = Sequences {
             l,
             with_pairs: options.candidates == Candidates::All,
@@ -89,7 +90,7 @@ fn share_of_bus<'b>(
 ) -> Expr<'b> {
     match l.spec.inverter.bus {
         BusSource::Fixed => {
-            let product = l.rounded_product(coefficient, l.nominal_bus());
+            let product = l.rounded_product(coefficient, bus.interval().high);
             l.voltage(name, product, doc)
         }
         BusSource::Measured { .. } => (coefficient * bus).named(name),

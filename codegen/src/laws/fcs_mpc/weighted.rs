@@ -26,7 +26,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (l, pair) = (self.l, u);
         let changes = memory.map(|memory| {
             let volts = 9.0 * (self.design.k_di * options.switching_weight).powi(2);
-            let volts = volts / l.spec.inverter.v_bus;
+            let inverter = &l.spec.inverter;
+            let volts = volts / (inverter.v_bus * inverter.reach_share());
             Changes::new(l, memory, volts, options.switching_weight)
         });
         let doc = "Third phase of the deadbeat voltage.";
@@ -64,7 +65,7 @@ impl<'b> Changes<'b> {
         u: Phases<'b, 3>,
         off_legs: Option<&OffLegs<'b>>,
     ) -> Expr<'b> {
-        let three = self.nearest_by_gains(l, u, front.bus.volts);
+        let three = self.nearest_by_gains(l, u, front.reach.volts);
         if off_legs.is_none() {
             state_score_over_bus(l, three.score, 1.0);
         }
@@ -136,7 +137,7 @@ impl<'b> Changes<'b> {
         l.b.stage("nearest_pair", &[doc]);
         let candidates = PAIRS.into_iter();
         let candidates =
-            candidates.map(|pair| (self.better(pair, front.bus.volts, u), pair.letter()));
+            candidates.map(|pair| (self.better(pair, front.reach.volts, u), pair.letter()));
         let best =
             candidates.reduce(|(best, _), (next, name)| (best.first_least(next, name), name));
         let rival = three_phase.unwrap_or_else(|| {

@@ -5,6 +5,7 @@ use crate::diagnostics::engineering;
 use crate::interface::{PublicConstant, PublicValue};
 use crate::laws::Description;
 use crate::laws::current_loop::LoopDesign;
+use crate::laws::whole_vectors::pulsed_legs;
 use crate::spec::{PhccSpec, Spec, SwitchingTable};
 
 const SETS: [&str; 4] = [
@@ -25,7 +26,8 @@ fn name(vector: i32) -> String {
 
 /// Documentation and constants of the method.
 pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Description {
-    let stride = design.plant.gain * 2.0 / 3.0 * spec.inverter.v_bus;
+    let high = spec.inverter.v_bus * spec.inverter.reach_share();
+    let stride = design.plant.gain * 2.0 / 3.0 * high;
     let table = switching_table(options, spec.motor.emf_shape);
     let mut notes = vec![
         format!(
@@ -37,9 +39,9 @@ pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> 
             "One three-phase vector moves the current by at most {} per period.",
             engineering(stride, "A")
         ),
-        String::new(),
-        origin(options.table).to_owned(),
     ];
+    notes.extend(pulsed_legs(spec));
+    notes.extend([String::new(), origin(options.table).to_owned()]);
     for (set, title) in SETS.iter().enumerate() {
         notes.extend([
             String::new(),

@@ -40,7 +40,7 @@ pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale:
         if folds {
             step.needs.memory = bands[1] + 1;
         }
-        let front = step.front(set_point);
+        let front = step.front_of_vectors(set_point);
         let axes = [("alpha", "h_a"), ("beta", "h_b")];
         let axes = [0, 1].map(|axis| {
             let ((name, memory), band) = (axes[axis], bands[axis]);

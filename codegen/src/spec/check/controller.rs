@@ -60,6 +60,7 @@ pub(super) fn read(
             .map(|given| (given.si, given.part.clone())),
         dead_time: inverter.dead_time.as_ref().map_or(0.0, |given| given.si),
         must_be_low: inverter.sensing.must_be_low(),
+        reads_off_legs: inverter.sensing.reads_off_legs(),
         inertia: motor.inertia,
         rated_frequency: match (motor.pole_pairs, &motor.rated_speed) {
             (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),

@@ -25,6 +25,12 @@ impl Sensing {
     pub fn must_be_low(&self) -> bool {
         matches!(self.place, Some(CurrentSensing::LowSide(_))) || self.minimum_low_time > 0.0
     }
+
+    /// Whether all three currents are known while a leg is off: that of an off leg whose upper diode conducts does not
+    /// flow through its low leg, but of three sensors the other two show it.
+    pub fn reads_off_legs(&self) -> bool {
+        self.phases == SensedPhases::Abc || !matches!(self.place, Some(CurrentSensing::LowSide(_)))
+    }
 }
 
 const SENSED_PHASES: &str = "sensed_phases";

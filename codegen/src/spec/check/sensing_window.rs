@@ -52,7 +52,8 @@ pub(super) fn check(
             (1.0 - LEAST_DUTY) / 2.0 / needed,
         ));
     }
-    if let Some(off) = controller.and_then(ControllerSpec::turns_off) {
+    let turns_off = controller.and_then(ControllerSpec::turns_off);
+    if let Some(off) = turns_off.filter(|_| !sensing.reads_off_legs()) {
         let place = reader.part("current_sensing", String::new);
         let phases = reader.part("sensed_phases", || "ab".to_owned());
         let at = options

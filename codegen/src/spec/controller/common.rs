@@ -284,6 +284,8 @@ pub(crate) struct Surroundings {
     pub dead_time: f64,
     /// Whether legs must be low for a while in every period, for their sensors or their bootstrap.
     pub must_be_low: bool,
+    /// Whether all currents are known while a leg is off.
+    pub reads_off_legs: bool,
     /// Inertia, kg m2.
     pub inertia: Option<f64>,
     /// Electrical frequency at rated speed, hertz.

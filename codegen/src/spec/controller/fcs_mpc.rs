@@ -66,7 +66,7 @@ impl Options for FcsMpcSpec {
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::choice::<Candidates>("candidates", "table2")
-                .by_default("`table2`; with `horizon: 2` `three_phase`")
+                .by_default("`three_phase` with `horizon: 2` or `current_sensing: low_side`, else `table2`")
                 .about("Candidate vectors"),
             |options| Some(word(options.candidates)),
         ),
@@ -99,13 +99,13 @@ impl Options for FcsMpcSpec {
 
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let horizon = reader.integer_or_preset(errors, "horizon");
-        let candidates = reader
-            .choice(errors, "candidates", &[])
-            .unwrap_or(if horizon == 2 {
+        let candidates = reader.choice(errors, "candidates", &[]).unwrap_or(
+            if horizon == 2 || !surroundings.reads_off_legs {
                 Candidates::ThreePhase
             } else {
                 Candidates::Table2
-            });
+            },
+        );
         let without_sectors = candidates == Candidates::ThreePhase;
         if without_sectors {
             refuse_commutation(reader, ["candidates", "three_phase"], errors);
@@ -155,7 +155,7 @@ impl Options for FcsMpcSpec {
         self.pairs().then_some(TurnsOff {
             option: "candidates",
             value: self.candidates.word(),
-            instead: "controller: pdcc",
+            instead: "candidates: three_phase",
         })
     }
 

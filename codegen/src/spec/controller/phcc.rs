@@ -101,7 +101,7 @@ impl Options for PhccSpec {
         ),
         Row::of(
             rule::choice::<PhccCandidates>("candidates", "table2")
-                .preset("table2")
+                .by_default("`three_phase` with `current_sensing: low_side`, else `table2`")
                 .about("Candidate vectors of the derived table"),
             |options| Some(word(options.candidates)),
         ),
@@ -110,20 +110,7 @@ impl Options for PhccSpec {
 
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let table = read_table(reader, errors);
-        let candidates = reader.choice_or_preset(errors, "candidates", &[]);
-        if table != Some(SwitchingTable::Derived)
-            && candidates == PhccCandidates::ThreePhase
-            && let (Some(field), Some(cause)) = (reader.field("candidates"), reader.field("table"))
-        {
-            errors.push(catalogue::option_without_effect(
-                &field.location,
-                "candidates",
-                "three_phase",
-                &cause.location,
-                "a table that is not derived",
-                "they are the candidates of the derived table",
-            ));
-        }
+        let candidates = read_candidates(reader, surroundings, table, errors);
         let three_phase = candidates == PhccCandidates::ThreePhase;
         let off_leg = read_off_leg(reader, three_phase, errors);
         let given = reader.plain_quantity(errors, "band");
@@ -169,11 +156,24 @@ impl Options for PhccSpec {
     }
 
     fn turns_off(&self) -> Option<TurnsOff> {
-        (self.candidates == PhccCandidates::Table2).then_some(TurnsOff {
-            option: "candidates",
-            value: "table2",
-            instead: "controller: pdcc",
-        })
+        match (self.table, self.candidates) {
+            (SwitchingTable::Derived, PhccCandidates::ThreePhase) => None,
+            (SwitchingTable::Derived, PhccCandidates::Table2) => Some(TurnsOff {
+                option: "candidates",
+                value: "table2",
+                instead: "candidates: three_phase",
+            }),
+            (SwitchingTable::Printed, _) => Some(TurnsOff {
+                option: "table",
+                value: "printed",
+                instead: "table: derived",
+            }),
+            (SwitchingTable::Given(_), _) => Some(TurnsOff {
+                option: "table",
+                value: "a list",
+                instead: "table: derived",
+            }),
+        }
     }
 
     fn modulates(&self) -> bool {
@@ -212,6 +212,38 @@ impl Options for PhccSpec {
 /// b = -alpha/2 + sqrt(3)/2 beta.
 fn phase_band(band: f64) -> f64 {
     f64::midpoint(1.0, 3_f64.sqrt()) * band
+}
+
+/// The candidates of the derived table; other tables have vectors with off legs.
+fn read_candidates(
+    reader: &Reader,
+    surroundings: &Surroundings,
+    table: Option<SwitchingTable>,
+    errors: &mut Collector,
+) -> PhccCandidates {
+    let is_derived = table == Some(SwitchingTable::Derived);
+    let by_default = if is_derived && !surroundings.reads_off_legs {
+        PhccCandidates::ThreePhase
+    } else {
+        PhccCandidates::Table2
+    };
+    let candidates = reader
+        .choice(errors, "candidates", &[])
+        .unwrap_or(by_default);
+    if !is_derived
+        && candidates == PhccCandidates::ThreePhase
+        && let (Some(field), Some(cause)) = (reader.field("candidates"), reader.field("table"))
+    {
+        errors.push(catalogue::option_without_effect(
+            &field.location,
+            "candidates",
+            "three_phase",
+            &cause.location,
+            "a table that is not derived",
+            "they are the candidates of the derived table",
+        ));
+    }
+    candidates
 }
 
 /// The table; derived by default. None together with an error.

@@ -105,7 +105,9 @@ impl<W: Word> Law<W> {
     pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         Ok(match &spec.controller {
             Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options, scale)?),
-            Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(options, scale)?),
+            Controller::FcsMpc(options) => {
+                Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options, scale)?)
+            }
             Controller::Phcc(options) => {
                 Self::Phcc(Box::new(phcc::Phcc::new(spec, options, scale)?))
             }

@@ -102,7 +102,7 @@ impl Law {
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         Ok(match &spec.controller {
             Controller::Pdcc(options) => Self::Pdcc(pdcc::Pdcc::new(spec, options)?),
-            Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options)),
+            Controller::FcsMpc(options) => Self::FcsMpc(fcs_mpc::FcsMpc::new(spec, options)?),
             Controller::Phcc(options) => Self::Phcc(Box::new(phcc::Phcc::new(spec, options)?)),
             Controller::PiPwm(options) => Self::PiPwm(pi_pwm::PiPwm::new(spec, options)?),
             Controller::PPwm(options) => Self::PPwm(p_pwm::PPwm::new(spec, options)?),

@@ -29,11 +29,22 @@ enum Share<W> {
 impl<W: Word> CommonModeRule<W> {
     pub fn new(spec: &Spec, mode: CommonMode, scale: &Scale) -> Result<Self, Error> {
         let inverter = &spec.inverter;
-        let (period, readable) = (inverter.timer_period, inverter.largest_compare()?);
         let top = match mode {
-            CommonMode::Centred => readable,
+            CommonMode::Centred => inverter.largest_compare()?,
             CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_compare()?,
         };
+        Self::with_top(spec, mode, top, scale)
+    }
+
+    /// That of whole vectors, whose high legs are alike and of which one leg is low throughout.
+    pub fn of_vectors(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
+        let top = spec.inverter.largest_compare()?;
+        Self::with_top(spec, CommonMode::ClampedLow, top, scale)
+    }
+
+    fn with_top(spec: &Spec, mode: CommonMode, top: u32, scale: &Scale) -> Result<Self, Error> {
+        let inverter = &spec.inverter;
+        let (period, readable) = (inverter.timer_period, inverter.largest_compare()?);
         let counts = match mode {
             CommonMode::Centred => 2.0 * f64::from(top) - f64::from(period),
             CommonMode::Readable | CommonMode::ClampedLow => f64::from(top),

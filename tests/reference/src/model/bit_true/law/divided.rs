@@ -1,6 +1,7 @@
 //! Two vectors in one period: the fractions of the period for which legs are high (sections 10a to
 //! 12 of FCS-MPC).
 
+use super::whole::Whole;
 use super::{Command, Inputs, pulses};
 use crate::exact::{Word, all_three, both, floor_shift, halve, within, word};
 use crate::model::vectors;
@@ -23,18 +24,18 @@ pub fn high_and_low(vector: usize) -> (usize, usize) {
 }
 
 /// Terminals between two vectors of three driven legs with those exact scores.
-pub fn between<W: Word>(v_bus: W, pair: [usize; 2], scores: [W; 2]) -> [W; 3] {
+pub fn between<W: Word>(v: W, pair: [usize; 2], scores: [W; 2]) -> [W; 3] {
     let high = pair.map(|vector| vectors::LEGS[vector].iter().filter(|leg| **leg > 0).count());
     let (lower, upper) = if high[0] < high[1] { (0, 1) } else { (1, 0) };
     let t = within(
-        floor_shift(v_bus * 4.0 + scores[lower] - scores[upper], 3),
+        floor_shift(v * 4.0 + scores[lower] - scores[upper], 3),
         0.0,
-        v_bus,
+        v,
     );
     all_three(|x| {
         let [in_lower, in_upper] = [lower, upper].map(|place| vectors::LEGS[pair[place]][x] > 0);
         if in_lower {
-            v_bus
+            v
         } else if in_upper {
             t
         } else {
@@ -44,10 +45,15 @@ pub fn between<W: Word>(v_bus: W, pair: [usize; 2], scores: [W; 2]) -> [W; 3] {
 }
 
 /// The command for these terminals.
-pub fn command<W: Word>(now: &Inputs<W>, terminal: [W; 3], off: Option<usize>) -> Command<W> {
+pub fn command<W: Word>(
+    now: &Inputs<W>,
+    whole: &Whole<W>,
+    terminal: [W; 3],
+    off: Option<usize>,
+) -> Command<W> {
     Command {
         legs: Legs::new(
-            terminal.map(|t| pulses::compare_of(now, t, word(0.0))),
+            terminal.map(|t| pulses::compare_up_to(now, t, word(0.0), whole.top())),
             all_three(|x| {
                 if off == Some(x) {
                     LegState::Off

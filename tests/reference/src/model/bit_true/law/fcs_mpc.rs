@@ -7,7 +7,7 @@ use super::{Decision, Inputs};
 use crate::exact::Word;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
-use crate::{Error, Switch};
+use crate::{Error, Spec, Switch};
 
 #[derive(Clone, Debug)]
 pub struct FcsMpc<W> {
@@ -19,11 +19,11 @@ pub struct FcsMpc<W> {
 }
 
 impl<W: Word> FcsMpc<W> {
-    pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Self, Error> {
+    pub fn new(spec: &Spec, options: &crate::FcsMpc, scale: &Scale) -> Result<Self, Error> {
         Ok(Self {
-            scores: Scores::new(options, scale)?,
+            scores: Scores::new(spec, options, scale)?,
             modulated: options.modulated == Switch::On,
-            weights: Weights::new(options, scale)?,
+            weights: Weights::new(spec, options, scale)?,
             two_steps: TwoSteps::new(options, scale)?,
         })
     }
@@ -43,7 +43,7 @@ impl<W: Word> FcsMpc<W> {
         let exact = !floating || (zero == 0 && others.end <= vectors::FIRST_PAIR);
         let choice = Choice::new(&self.scores, now, u_unsat);
         if let Some(two_steps) = &self.two_steps {
-            let vector = two_steps.choose(*candidates, now, u_unsat);
+            let vector = two_steps.choose(*candidates, &choice, now);
             return choice.apply(now, vector);
         }
         if let Some(weights) = &self.weights {

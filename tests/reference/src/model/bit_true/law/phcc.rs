@@ -1,7 +1,7 @@
 //! PHCC: the predicted error's components against their bands, and the vector of a table for both
 //! directions.
 
-use super::whole::{self, Sixth};
+use super::whole::Whole;
 use super::{Decision, Inputs};
 use crate::exact::{Coefficient, Word, both, floor_shift, round_half_up, word};
 use crate::model::Reach;
@@ -31,7 +31,7 @@ pub struct Phcc<W> {
     /// Of the present current in this prediction and in the next, with a held EMF.
     k_now: Coefficient<W>,
     k_past: Coefficient<W>,
-    sixth: Sixth<W>,
+    whole: Whole<W>,
     /// BAND_A, BAND_B.
     bands: [f64; 2],
     switching: Switching,
@@ -56,7 +56,7 @@ impl<W: Word> Phcc<W> {
             k_hold: scale.only_if(!holds, "k_hold", scale.ohm * held / b)?,
             k_now: scale.only_if(holds, "k_now", -scale.ohm * (1.0 + a) / b)?,
             k_past: scale.only_if(holds, "k_past", scale.ohm * a / b)?,
-            sixth: Sixth::new(scale)?,
+            whole: Whole::new(spec, scale)?,
             bands: [band, 3f64.sqrt() * band].map(round_half_up),
             switching: Switching::new(spec, options)?,
         })
@@ -95,7 +95,7 @@ impl<W: Word> Phcc<W> {
             .switching
             .vector(set, now.sector_eff, now.commutating, rises);
         // 11, 12
-        let u = self.sixth.voltage(now, vector);
+        let u = self.whole.voltage(now, vector);
         let past = if self.holds {
             let left = folded(hysteresis);
             Past {
@@ -111,7 +111,7 @@ impl<W: Word> Phcc<W> {
             u,
             reach: Reach::Inside,
             vector,
-            command: whole::command(now, vector, self.pairs),
+            command: self.whole.command(now, vector, self.pairs),
             integral: now.integral,
             hysteresis,
             past,

@@ -31,7 +31,13 @@ fn nominal<W: Word>(now: &Inputs<W>, t: W) -> W {
 /// dead time.
 #[inline]
 pub fn compare_of<W: Word>(now: &Inputs<W>, t: W, shift: W) -> u16 {
-    compare(now, nominal(now, t) + shift, now.k.timer_period)
+    compare_up_to(now, t, shift, now.k.timer_period)
+}
+
+/// The same of a leg with the largest compare value `top`.
+#[inline]
+pub fn compare_up_to<W: Word>(now: &Inputs<W>, t: W, shift: W, top: f64) -> u16 {
+    compare(now, nominal(now, t) + shift, top)
 }
 
 /// Three pulsed legs with voltages about the middle of the bus; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.

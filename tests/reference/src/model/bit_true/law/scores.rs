@@ -2,13 +2,13 @@
 
 use super::deadbeat::Form;
 use super::divided;
-use super::whole::{self, Sixth};
+use super::whole::Whole;
 use super::{Decision, Inputs};
 use crate::exact::{Shift, Word, both, floor, halve, round_half_up, within, word};
 use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
-use crate::{Candidates, Error};
+use crate::{Candidates, Error, Spec};
 
 /// Constants of the scores and of the decision.
 #[derive(Clone, Debug)]
@@ -17,13 +17,13 @@ pub struct Scores<W> {
     /// Pairs are allowed and their off leg is where current or EMF puts it.
     pub floating: bool,
     pub form: Form<W>,
-    sixth: Sixth<W>,
+    whole: Whole<W>,
     pub score: Shift,
     i_comm_volts: f64,
 }
 
 impl<W: Word> Scores<W> {
-    pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Self, Error> {
+    pub fn new(spec: &Spec, options: &crate::FcsMpc, scale: &Scale) -> Result<Self, Error> {
         let floating = scale.variant.floating;
         let held = scale.phase.a / scale.phase.b;
         let threshold = held * options.commutation_threshold / scale.w;
@@ -31,7 +31,7 @@ impl<W: Word> Scores<W> {
             candidates: options.candidates,
             floating,
             form: Form::new(false, scale)?,
-            sixth: Sixth::new(scale)?,
+            whole: Whole::new(spec, scale)?,
             score: scale.product_if(floating || options.torque_weight > 0.0, "score")?,
             i_comm_volts: round_half_up(threshold * scale.two_v),
         })
@@ -41,7 +41,10 @@ impl<W: Word> Scores<W> {
 /// Inputs of the scores.
 pub struct Choice<'a, W> {
     pub law: &'a Scores<W>,
-    pub v_bus: W,
+    /// V: the voltage of a high leg.
+    pub v: W,
+    /// The upper rail.
+    v_bus: W,
     pub u: [W; 3],
     e: [W; 3],
     /// K a i(k+1).
@@ -53,6 +56,7 @@ impl<'a, W: Word> Choice<'a, W> {
         let abc = |x: [W; 2]| [x[0], x[1], -(x[0] + x[1])];
         Self {
             law,
+            v: law.whole.reach(now),
             v_bus: now.v_bus,
             u: abc(u),
             e: abc(now.e),
@@ -67,7 +71,7 @@ impl<'a, W: Word> Choice<'a, W> {
         let u = if self.law.floating {
             self.voltage(vector)
         } else {
-            self.law.sixth.voltage(now, vector)
+            self.law.whole.voltage(now, vector)
         };
         Decision {
             u_unsat: [self.u[0], self.u[1]],
@@ -75,7 +79,11 @@ impl<'a, W: Word> Choice<'a, W> {
             reach: Reach::Inside,
             vector,
             // 11
-            command: whole::command(now, vector, self.law.candidates != Candidates::ThreePhase),
+            command: (self.law.whole).command(
+                now,
+                vector,
+                self.law.candidates != Candidates::ThreePhase,
+            ),
             integral: now.integral,
             hysteresis: now.hysteresis,
             past: self.law.form.past(now, u),
@@ -96,7 +104,7 @@ impl<'a, W: Word> Choice<'a, W> {
     /// The vector's score; `exact` without the product that is common to all scores of an exact
     /// list.
     pub fn score(&self, vector: usize, exact: bool) -> W {
-        let along = self.by_bus(vector);
+        let along = self.by_reach(vector);
         if exact {
             along
         } else {
@@ -104,26 +112,26 @@ impl<'a, W: Word> Choice<'a, W> {
         }
     }
 
-    /// The score with the multiple `along` of the bus, one floor of both its products: vectors of
+    /// The score with the multiple `along` of V, one floor of both its products: vectors of
     /// the same voltage have the same score, whatever products it consists of.
     pub fn rounded(&self, vector: usize, along: W) -> W {
         let score = &self.law.score;
         match self.aside(vector) {
-            None => score.floor_product(self.v_bus, along),
-            Some([x, y]) => score.floor_sum_of_products([x, y], [self.v_bus, along]),
+            None => score.floor_product(self.v, along),
+            Some([x, y]) => score.floor_sum_of_products([x, y], [self.v, along]),
         }
     }
 
-    /// The part of the score that is a multiple of the bus, over the bus.
-    pub fn by_bus(&self, vector: usize) -> W {
-        score_by_bus(self.v_bus, &self.u, vector)
+    /// The part of the score that is a multiple of V, over V.
+    pub fn by_reach(&self, vector: usize) -> W {
+        score_by_reach(self.v, &self.u, vector)
     }
 
     /// Factors of the contribution of an off leg that is not midway.
     fn aside(&self, vector: usize) -> Option<[W; 2]> {
         let off = vectors::off_leg(vector).filter(|_| self.law.floating)?;
         Some(if vector < vectors::FIRST_PAIR_ZERO {
-            let d = self.off_terminal(off, halve(self.v_bus)) * 2.0 - self.v_bus;
+            let d = self.off_terminal(off, halve(self.v)) * 2.0 - self.v;
             [d, d - self.u[off] * 6.0]
         } else {
             let tau = self.off_terminal(off, word(0.0));
@@ -134,7 +142,7 @@ impl<'a, W: Word> Choice<'a, W> {
     /// The decision with a second vector (10a).
     pub fn divide(&self, now: &Inputs<W>, vector: usize) -> Decision<W> {
         let command = if now.sector_eff == 0 {
-            divided::command(now, [word(0.0); 3], None)
+            divided::command(now, &self.law.whole, [word(0.0); 3], None)
         } else if let Some(off) = vectors::off_leg(vector) {
             let [first, second] = divided::with_off_leg(off);
             let line = |vector: usize| {
@@ -161,15 +169,16 @@ impl<'a, W: Word> Choice<'a, W> {
                 Some(rail) => self.u[p] + halve(rail + self.u[p]),
             };
             let mut terminal = [word(0.0); 3];
-            terminal[p] = within(t, 0.0, self.v_bus);
-            divided::command(now, terminal, Some(off))
+            terminal[p] = within(t, 0.0, self.v);
+            divided::command(now, &self.law.whole, terminal, Some(off))
         } else {
             let others = (0..vectors::FIRST_PAIR).filter(|other| *other != vector);
             let partner = first_least(others, |other| self.score(other, true));
             let scores = [vector, partner].map(|vector| self.score(vector, true));
             divided::command(
                 now,
-                divided::between(self.v_bus, [vector, partner], scores),
+                &self.law.whole,
+                divided::between(self.v, [vector, partner], scores),
                 None,
             )
         };
@@ -193,7 +202,7 @@ impl<'a, W: Word> Choice<'a, W> {
     /// Voltages of phases a, b as in the score, for the trace.
     fn voltage(&self, vector: usize) -> [W; 2] {
         let legs = vectors::LEGS[vector];
-        let terminal = legs.map(|leg| if leg > 0 { self.v_bus } else { word(0.0) });
+        let terminal = legs.map(|leg| if leg > 0 { self.v } else { word(0.0) });
         self.predicted(terminal, vectors::off_leg(vector))
     }
 
@@ -208,17 +217,17 @@ impl<'a, W: Word> Choice<'a, W> {
     }
 }
 
-/// 6 (|v|^2 - 2 u v) over the bus, with an off leg midway.
-pub fn score_by_bus<W: Word>(v_bus: W, u: &[W; 3], vector: usize) -> W {
+/// 6 (|v|^2 - 2 u v) over V, with an off leg midway.
+pub fn score_by_reach<W: Word>(v: W, u: &[W; 3], vector: usize) -> W {
     let legs = vectors::LEGS[vector];
     let find = |wanted: i8| legs.iter().position(|leg| *leg == wanted);
     let high = legs.iter().filter(|leg| **leg > 0).count();
     match (vectors::off_leg(vector), find(1), find(-1)) {
         // One leg high.
-        (None, Some(x), Some(_)) if high == 1 => v_bus * 4.0 - u[x] * 12.0,
+        (None, Some(x), Some(_)) if high == 1 => v * 4.0 - u[x] * 12.0,
         // One leg low.
-        (None, Some(_), Some(x)) => v_bus * 4.0 + u[x] * 12.0,
-        (Some(_), Some(p), Some(q)) => v_bus * 3.0 - (u[p] - u[q]) * 6.0,
+        (None, Some(_), Some(x)) => v * 4.0 + u[x] * 12.0,
+        (Some(_), Some(p), Some(q)) => v * 3.0 - (u[p] - u[q]) * 6.0,
         _ => word(0.0),
     }
 }

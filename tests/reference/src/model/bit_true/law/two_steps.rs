@@ -1,7 +1,7 @@
 //! The choice of FCS-MPC over two periods: every sequence of two vectors (section 10h).
 
 use super::Inputs;
-use super::scores::score_by_bus;
+use super::scores::{Choice, score_by_reach};
 use crate::exact::{Coefficient, Word, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
@@ -29,13 +29,14 @@ impl<W: Word> TwoSteps<W> {
     }
 
     /// The first vector of the best sequence.
-    pub fn choose(&self, candidates: Candidates, now: &Inputs<W>, u: [W; 2]) -> usize {
+    pub fn choose(&self, candidates: Candidates, choice: &Choice<W>, now: &Inputs<W>) -> usize {
+        let (v, u) = (choice.v, choice.u);
         let abc = |x: [W; 2]| [x[0], x[1], -(x[0] + x[1])];
         let y = [0, 1].map(|x| now.j[x] + now.e[x] + self.pole.mul(u[x] - now.j[x]));
         let z = abc([0, 1].map(|x| u[x] + self.pole.mul(y[x])));
         let y = abc(y);
-        let first = self.first.mul(now.v_bus);
-        let sixth = self.pole_sixth.mul(now.v_bus);
+        let first = self.first.mul(v);
+        let sixth = self.pole_sixth.mul(v);
         let list = || {
             let (zero, others) = vectors::candidates(candidates, now.commutating, now.sector_eff);
             std::iter::once(zero).chain(others)
@@ -44,9 +45,9 @@ impl<W: Word> TwoSteps<W> {
         for one in list() {
             let moved = vectors::sixths(one);
             let left = [0, 1, 2].map(|x| y[x] - sixth * moved[x]);
-            let own = score_by_bus(first, &z, one);
+            let own = score_by_reach(first, &z, one);
             for two in list() {
-                let score = own + score_by_bus(now.v_bus, &left, two);
+                let score = own + score_by_reach(v, &left, two);
                 if score < least {
                     (chosen, least) = (one, score);
                 }

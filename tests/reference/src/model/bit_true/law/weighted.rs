@@ -5,7 +5,7 @@ use super::scores::{Choice, first_least};
 use crate::exact::{Coefficient, Word, halve, round_half_up, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::vectors;
-use crate::{Error, Switch};
+use crate::{Error, Spec, Switch};
 
 #[derive(Clone, Debug)]
 pub struct Weights<W> {
@@ -16,13 +16,15 @@ pub struct Weights<W> {
 
 impl<W: Word> Weights<W> {
     /// `None` if only the current error is weighted.
-    pub fn new(options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
+    pub fn new(spec: &Spec, options: &crate::FcsMpc, scale: &Scale) -> Result<Option<Self>, Error> {
         let weighs = options.switching_weight + options.torque_weight > 0.0;
         if !weighs || options.modulated == Switch::On {
             return Ok(None);
         }
         let stiffness = options.switching_weight / scale.phase.b;
-        let volts = 9.0 * stiffness * stiffness / scale.v_bus;
+        let inverter = &spec.inverter;
+        let share = f64::from(inverter.largest_compare()?) / f64::from(inverter.timer_period);
+        let volts = 9.0 * stiffness * stiffness / (scale.v_bus * share);
         let torque = options.torque_weight > 0.0;
         let k_torque_weight =
             torque.then(|| scale.coefficient("k_torque_weight", 3.0 * options.torque_weight));
@@ -46,7 +48,7 @@ impl<W: Word> Weights<W> {
             });
         }
         if exact {
-            return first_least(list, |vector| self.by_bus(choice, now, vector));
+            return first_least(list, |vector| self.by_reach(choice, now, vector));
         }
         // One of each kind, in the list's order.
         let mut kept: Vec<usize> = vec![];
@@ -55,7 +57,7 @@ impl<W: Word> Weights<W> {
                 None => kept.push(vector),
                 Some(place) => {
                     let [known, new] =
-                        [kept[place], vector].map(|vector| self.by_bus(choice, now, vector));
+                        [kept[place], vector].map(|vector| self.by_reach(choice, now, vector));
                     if new < known {
                         kept[place] = vector;
                     }
@@ -72,14 +74,14 @@ impl<W: Word> Weights<W> {
         word::<W>(self.change) * vectors::changes(now.vector_prev, vector)
     }
 
-    /// The score over the bus, without the contribution of an off leg.
-    fn by_bus(&self, choice: &Choice<W>, now: &Inputs<W>, vector: usize) -> W {
-        choice.by_bus(vector) + self.changed(now, vector)
+    /// The score over V, without the contribution of an off leg.
+    fn by_reach(&self, choice: &Choice<W>, now: &Inputs<W>, vector: usize) -> W {
+        choice.by_reach(vector) + self.changed(now, vector)
     }
 
     /// The score with rounded products.
     fn rounded(&self, choice: &Choice<W>, now: &Inputs<W>, vector: usize) -> W {
-        let along = self.by_bus(choice, now, vector);
+        let along = self.by_reach(choice, now, vector);
         choice.rounded(vector, along)
     }
 }
@@ -100,7 +102,7 @@ fn torque<W: Word>(
     now: &Inputs<W>,
     vector: usize,
 ) -> W {
-    let v = choice.v_bus;
+    let v = choice.v;
     let terminal = |x: usize| match vectors::LEGS[vector][x] {
         1 => v,
         -1 => word(0.0),

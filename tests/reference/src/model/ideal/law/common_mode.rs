@@ -34,6 +34,15 @@ impl CommonModeRule {
         })
     }
 
+    /// That of whole vectors, whose high legs are alike and of which one leg is low throughout.
+    pub fn of_vectors(spec: &Spec) -> Result<Self, Error> {
+        let rule = Self::new(spec, CommonMode::ClampedLow)?;
+        Ok(Self {
+            top: rule.second,
+            ..rule
+        })
+    }
+
     /// The spread of phase voltages that fits, of a bus of `v_bus`.
     pub fn reach(self, v_bus: f64) -> f64 {
         match self.mode {

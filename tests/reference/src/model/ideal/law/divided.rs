@@ -1,7 +1,8 @@
 //! Two vectors in one period: the point nearest to the demand on the line between them.
 
 use super::off_leg::{TIE, floats, rail, with_off_leg};
-use super::{Command, Inputs, whole};
+use super::whole::Whole;
+use super::{Command, Inputs};
 use crate::FcsMpc;
 use crate::model::ideal::Duties;
 use crate::model::ideal::vector::{clarke, phases};
@@ -12,6 +13,7 @@ use nalgebra::{Vector2, Vector3};
 /// The shared period of the chosen vector and its partner: mean voltage and command.
 pub fn command(
     options: &FcsMpc,
+    whole: Whole,
     now: &Inputs,
     u: &Vector2<f64>,
     vector: usize,
@@ -19,8 +21,8 @@ pub fn command(
     let off = vectors::off_leg(vector);
     let terminal = match off {
         _ if now.sector_eff == 0 => Vector3::zeros(),
-        None => neighbours(now, u, vector),
-        Some(off) => pair(options, now, u, off),
+        None => neighbours(whole, now, u, vector),
+        Some(off) => pair(options, whole, now, u, off),
     };
     let mean = match off {
         Some(off) if floats(options) => with_off_leg(options, now, terminal, off),
@@ -59,33 +61,37 @@ fn share(u: &Vector2<f64>, first: &Vector2<f64>, second: &Vector2<f64>) -> f64 {
 }
 
 /// Terminals between a three-phase vector and the nearest of the others.
-fn neighbours(now: &Inputs, u: &Vector2<f64>, vector: usize) -> Vector3<f64> {
+fn neighbours(whole: Whole, now: &Inputs, u: &Vector2<f64>, vector: usize) -> Vector3<f64> {
     let tie = TIE * (u.norm() + now.v_bus).powi(2);
     let mut best: Option<(usize, f64)> = None;
     for other in (0..vectors::FIRST_PAIR).filter(|other| *other != vector) {
-        let cost = (u - whole::voltage(now, other)).norm_squared();
+        let cost = (u - whole.voltage(now, other)).norm_squared();
         if best.is_none_or(|(_, least)| cost < least - tie) {
             best = Some((other, cost));
         }
     }
     let other = best.map_or(0, |(other, _)| other);
-    let share = share(u, &whole::voltage(now, vector), &whole::voltage(now, other));
-    let legs = |vector: usize| {
-        Vector3::from(vectors::LEGS[vector].map(|leg| if leg > 0 { now.v_bus } else { 0.0 }))
-    };
-    legs(vector) * share + legs(other) * (1.0 - share)
+    let share = share(u, &whole.voltage(now, vector), &whole.voltage(now, other));
+    whole.terminals(now, vector) * share + whole.terminals(now, other) * (1.0 - share)
 }
 
 /// Terminals between the better pair vector with that leg off and its zero.
-fn pair(options: &FcsMpc, now: &Inputs, u: &Vector2<f64>, off: usize) -> Vector3<f64> {
+fn pair(
+    options: &FcsMpc,
+    whole: Whole,
+    now: &Inputs,
+    u: &Vector2<f64>,
+    off: usize,
+) -> Vector3<f64> {
+    let reach = whole.reach(now);
     // Held at a rail, or following the two others: its own EMF moves both ends equally, across the
     // line.
     let held = rail(options, now, off).filter(|_| floats(options));
     let ends = |high: usize| {
         let mut on = Vector3::zeros();
-        on[high] = now.v_bus;
+        on[high] = reach;
         let mut zero = Vector3::zeros();
-        on[off] = held.unwrap_or(now.v_bus / 2.0);
+        on[off] = held.unwrap_or(reach / 2.0);
         zero[off] = held.unwrap_or(0.0);
         (clarke(&on), clarke(&zero))
     };
@@ -101,6 +107,6 @@ fn pair(options: &FcsMpc, now: &Inputs, u: &Vector2<f64>, off: usize) -> Vector3
     let high = if volts[p] >= volts[q] { p } else { q };
     let (on, zero) = ends(high);
     let mut terminal = Vector3::zeros();
-    terminal[high] = share(u, &on, &zero) * now.v_bus;
+    terminal[high] = share(u, &on, &zero) * reach;
     terminal
 }

@@ -1,12 +1,13 @@
 //! FCS-MPC: the candidate with the least distance to the deadbeat voltage, found by enumeration.
 
 use super::off_leg::{TIE, floats, with_off_leg};
-use super::{Decision, Inputs, deadbeat, divided, whole};
+use super::whole::Whole;
+use super::{Decision, Inputs, deadbeat, divided};
 use crate::model::Reach;
 use crate::model::ideal::vector::phases;
 use crate::model::vectors;
-use crate::{Candidates, Spec, Switch};
-use nalgebra::{Vector2, Vector3};
+use crate::{Candidates, Error, Spec, Switch};
+use nalgebra::Vector2;
 
 /// The options, with their constants of the drive.
 #[derive(Clone, Debug)]
@@ -14,14 +15,16 @@ pub struct FcsMpc {
     options: crate::FcsMpc,
     /// Nominal bus, volt.
     v_bus: f64,
+    whole: Whole,
 }
 
 impl FcsMpc {
-    pub fn new(spec: &Spec, options: &crate::FcsMpc) -> Self {
-        Self {
+    pub fn new(spec: &Spec, options: &crate::FcsMpc) -> Result<Self, Error> {
+        Ok(Self {
             options: *options,
             v_bus: spec.inverter.v_bus,
-        }
+            whole: Whole::new(spec)?,
+        })
     }
 
     pub fn decide(&self, now: &Inputs) -> Decision {
@@ -31,9 +34,9 @@ impl FcsMpc {
         let weighted = options.modulated == Switch::Off
             && options.switching_weight + options.torque_weight > 0.0;
         let cost = |vector: usize| {
-            let miss = u_unsat - voltage(options, now, vector);
+            let miss = u_unsat - self.voltage(now, vector);
             if options.horizon == 2 {
-                miss.norm_squared() + second_miss(options, now, &miss)
+                miss.norm_squared() + self.second_miss(now, &miss)
             } else if weighted {
                 miss.norm_squared() + self.weighed(now, vector, &miss)
             } else {
@@ -58,11 +61,11 @@ impl FcsMpc {
             Switch::Off => {
                 let turns_off = options.candidates != Candidates::ThreePhase;
                 (
-                    voltage(options, now, vector),
-                    whole::command(now, vector, turns_off),
+                    self.voltage(now, vector),
+                    self.whole.command(now, vector, turns_off),
                 )
             }
-            Switch::On => divided::command(options, now, &u_unsat, vector),
+            Switch::On => divided::command(options, self.whole, now, &u_unsat, vector),
         };
         Decision {
             u_unsat,
@@ -89,27 +92,27 @@ impl FcsMpc {
         let line = missed[x] - missed[y];
         switching + self.options.torque_weight * line * line / 3.0
     }
-}
 
-/// The least square of the second period's miss, after a first vector that misses the demanded
-/// voltage by this much (section 10h).
-fn second_miss(options: &crate::FcsMpc, now: &Inputs, miss: &Vector2<f64>) -> f64 {
-    let (a, b) = (now.phase.a, now.phase.b);
-    // The first period ends with i_ref - b miss.
-    let wanted = (now.i_ref - (now.i_ref - miss * b) * a) / b + now.e;
-    let (zero, others) = vectors::candidates(options.candidates, now.commutating, now.sector_eff);
-    std::iter::once(zero)
-        .chain(others)
-        .map(|vector| (wanted - whole::voltage(now, vector)).norm_squared())
-        .fold(f64::INFINITY, f64::min)
-}
+    /// The least square of the second period's miss, after a first vector that misses the demanded
+    /// voltage by this much (section 10h).
+    fn second_miss(&self, now: &Inputs, miss: &Vector2<f64>) -> f64 {
+        let (a, b) = (now.phase.a, now.phase.b);
+        // The first period ends with i_ref - b miss.
+        let wanted = (now.i_ref - (now.i_ref - miss * b) * a) / b + now.e;
+        let candidates = self.options.candidates;
+        let (zero, others) = vectors::candidates(candidates, now.commutating, now.sector_eff);
+        std::iter::once(zero)
+            .chain(others)
+            .map(|vector| (wanted - self.whole.voltage(now, vector)).norm_squared())
+            .fold(f64::INFINITY, f64::min)
+    }
 
-/// The assumed voltage of a vector.
-fn voltage(options: &crate::FcsMpc, now: &Inputs, vector: usize) -> Vector2<f64> {
-    let Some(off) = vectors::off_leg(vector).filter(|_| floats(options)) else {
-        return whole::voltage(now, vector);
-    };
-    let terminal =
-        Vector3::from(vectors::LEGS[vector].map(|leg| if leg > 0 { now.v_bus } else { 0.0 }));
-    with_off_leg(options, now, terminal, off)
+    /// The assumed voltage of a vector.
+    fn voltage(&self, now: &Inputs, vector: usize) -> Vector2<f64> {
+        let Some(off) = vectors::off_leg(vector).filter(|_| floats(&self.options)) else {
+            return self.whole.voltage(now, vector);
+        };
+        let terminal = self.whole.terminals(now, vector);
+        with_off_leg(&self.options, now, terminal, off)
+    }
 }

@@ -1,7 +1,8 @@
 //! PHCC: the predicted error's components against their bands, and the vector of a table for both
 //! directions.
 
-use super::{Decision, Inputs, deadbeat, held, whole};
+use super::whole::Whole;
+use super::{Decision, Inputs, deadbeat, held};
 use crate::model::Reach;
 use crate::model::ideal::vector::to_ab;
 use crate::model::switching::{self, Switching};
@@ -14,6 +15,7 @@ pub struct Phcc {
     band: f64,
     /// Vectors of pairs are allowed, which turn legs off.
     pairs: bool,
+    whole: Whole,
     switching: Switching,
 }
 
@@ -22,6 +24,7 @@ impl Phcc {
         Ok(Self {
             band: options.band,
             pairs: options.candidates != Candidates::ThreePhase,
+            whole: Whole::new(spec)?,
             switching: Switching::new(spec, options)?,
         })
     }
@@ -42,13 +45,13 @@ impl Phcc {
         let vector = self
             .switching
             .vector(set, now.sector_eff, now.commutating, rises);
-        let u = whole::voltage(now, vector);
+        let u = self.whole.voltage(now, vector);
         Decision {
             u_unsat: error / now.phase.b,
             u,
             reach: Reach::Inside,
             vector,
-            command: whole::command(now, vector, self.pairs),
+            command: self.whole.command(now, vector, self.pairs),
             integral: to_ab(&now.integral),
             rises: rises.map(Some),
             past: if now.emf_is_held {
