@@ -13,7 +13,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{CurrentSensing, Origins, Spec};
+use crate::spec::{Origins, Spec};
 use crate::stopwatch::Part;
 
 /// Input of the emitters.
@@ -67,7 +67,6 @@ fn by_target(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
 }
 
 fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
-    check_sensing(spec, origins)?;
     let common = spec.controller.common();
     let design = LoopDesign::new(spec, common);
     let law = law(&spec.controller);
@@ -93,33 +92,6 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let interface = interface(spec, &design, &scaled, &description, accuracy);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
-}
-
-/// What a specification can say of sensors and legs, and this version cannot generate.
-fn check_sensing(spec: &Spec, origins: &Origins) -> Result<(), Diagnostics> {
-    let inverter = &spec.inverter;
-    let mut errors = Collector::new();
-    let is_pulsed = law(&spec.controller).period() == Period::Pulses;
-    if is_pulsed && spec.controller.common_mode().is_none() {
-        let held = [
-            (
-                "current_sensing",
-                inverter.current_sensing != CurrentSensing::InPhase,
-            ),
-            ("minimum_low_time", inverter.minimum_low_time > 0.0),
-        ];
-        for (name, _) in held.iter().filter(|(_, is_asked)| *is_asked) {
-            let path = format!("inverter.{name}");
-            let (at, given) = (origins.at(&path), origins.given(&path, ""));
-            errors.push(catalogue::legs_held_high(
-                at,
-                name,
-                &given,
-                spec.controller.kind(),
-            ));
-        }
-    }
-    errors.into_result(())
 }
 
 /// Warnings about a drive that is generated nevertheless.

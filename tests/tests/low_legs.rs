@@ -65,6 +65,14 @@ const CHOICES: [&str; 4] = [
     "switching_weight = \"0.4 A\"\ntorque_weight = 0.6",
 ];
 
+/// Pulses of a pair of legs, the third off.
+const PAIRS: [&str; 4] = [
+    "kind = \"pdcc\"\nmodulation = \"pair\"",
+    "kind = \"pdcc\"\nmodulation = \"pair\"\nemf = \"model\"\nsaturation = \"keep_angle\"\ndead_time_compensation = \"on\"",
+    "kind = \"pi-pwm\"\nsix_step = \"on\"",
+    "kind = \"pi-pwm\"\nsix_step = \"on\"\ndead_time_compensation = \"on\"",
+];
+
 /// Controllers that turn legs off.
 fn turning_off() -> Vec<String> {
     let choices =
@@ -93,11 +101,17 @@ fn each_drive(check: impl Fn(&str, &str)) {
         }
     }
     for controller in VECTORS {
-        check(&three, &format!("{controller}\ncandidates = \"three_phase\""));
+        check(
+            &three,
+            &format!("{controller}\ncandidates = \"three_phase\""),
+        );
     }
     for inverter in [BOOTSTRAP, &bootstrap, &three, &three_measured] {
         for controller in turning_off() {
             check(inverter, &controller);
+        }
+        for controller in PAIRS {
+            check(inverter, controller);
         }
     }
 }
@@ -111,7 +125,7 @@ fn graph_and_model_agree() {
 /// turning point and 0.2 us behind it.
 fn tops(text: &str) -> [u16; 2] {
     // The high legs of vectors are alike.
-    let is_alike = ["centred", "fcs-mpc", "phcc"]
+    let is_alike = ["centred", "fcs-mpc", "phcc", "modulation", "six_step"]
         .iter()
         .any(|name| text.contains(name));
     let is_spared = text.contains("abc") && !is_alike;

@@ -84,6 +84,17 @@ impl CommonModeRule {
         Bus { volts, ..bus }
     }
 
+    /// The largest line voltage of a pair, as a bus: one leg is pulsed, its partner low throughout.
+    pub fn reach_of_pair<'b>(l: &Lowering<'b>, bus: Bus<'b>) -> Bus<'b> {
+        let rule = Self::of_vectors(l);
+        if rule.top == rule.period {
+            return bus;
+        }
+        let whose = "the pulsed leg of a pair reaches which must be low for a while";
+        let volts = rule.share(l, bus, rule.top, ["k_line", "v_line", whose]);
+        Bus { volts, ..bus }
+    }
+
     /// The voltage of so many counts.
     fn share<'b>(
         self,

@@ -173,7 +173,8 @@ impl<'b> Modulator<'b> {
         l.b.guarded_stage("modulate_pair", pairing, false, &[doc]);
         let sign = pair_signs(l, sector);
         let line = across_pair(sign, unlimited.with_c("u_pair"));
-        let pulses = self.pulse_pair(l, sign, limit_line(line, self.bus));
+        let reach = CommonModeRule::reach_of_pair(l, self.bus);
+        let pulses = self.pulse_pair(l, sign, limit_line(line, reach));
         let one = pick(
             [sign.a().is(0), sign.b().is(0)],
             [1, 2, 3].map(|number| l.b.number(number)),

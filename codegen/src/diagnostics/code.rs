@@ -145,8 +145,6 @@ codes! {
     SwitchingTable = 408,
     /// Two sensors in the low legs cannot see the current of a leg that is off.
     UnreadableLeg = 409,
-    /// A controller holds legs high that must be low for a while in every period.
-    LegsHeldHigh = 410,
     /// The inductance may lie outside the loop's stable range.
     InductanceOutsideStableRange = 501,
     /// The resistance may lie outside the loop's stable range.

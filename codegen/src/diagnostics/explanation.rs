@@ -399,12 +399,6 @@ impl Code {
                 "kind = \"phcc\"\nband = \"1 A\"",
                 "Narrow it; what one vector moves the current by in a period is a good start.",
             ),
-            Self::LegsHeldHigh => say(
-                "Legs that must be low for a while in every period cannot be held high for whole periods.",
-                "minimum_low_time = \"2 us\"\nkind = \"pdcc\"\nmodulation = \"pair\"",
-                "minimum_low_time = \"2 us\"\nkind = \"pdcc\"",
-                "Choose a controller and modulation that pulse three legs.",
-            ),
             Self::UnreadableLeg => say(
                 "The current of an off leg may flow past a sensor in its low leg.",
                 "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"\nkind = \"phcc\"\ncandidates = \"table2\"",

@@ -292,17 +292,6 @@ pub fn unreadable_leg(
     with_parts(error, &[place, phases])
 }
 
-/// Legs must be low for a while in every period, and this controller holds them high.
-pub fn legs_held_high(at: &Location, name: &str, given: &str, kind: &str) -> Diagnostic {
-    Diagnostic::new(
-        Code::LegsHeldHigh,
-        at,
-        format!(
-            "`{name}`: {given} needs legs that are low for a while in every period, but `{kind}` with these options holds legs high for whole periods; choose three pulsed legs: `pdcc` with `modulation: three_phase`, `pi-pwm` with `six_step: off`, or `p-pwm`"
-        ),
-    )
-}
-
 /// The residual watch allows for `allowed` volts at standstill with the largest set-point, as written or
 /// by default; `bus`, volt.
 pub fn watch_is_blind(

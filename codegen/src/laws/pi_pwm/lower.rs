@@ -168,7 +168,8 @@ impl<'l, 'b> Regulator<'l, 'b> {
         }
         let doc = "Winding voltage before the limit";
         l.state_volts("voltage", u, doc);
-        let line = limit_line(u << 1, front.bus);
+        let reach = CommonModeRule::reach_of_pair(l, front.bus);
+        let line = limit_line(u << 1, reach);
         l.b.stage("integrate", INTEGRATION);
         named! {
             let distance = (line >> 1) - integral;

@@ -33,16 +33,36 @@ impl<W: Word> CommonModeRule<W> {
             CommonMode::Centred => inverter.largest_compare()?,
             CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_compare()?,
         };
-        Self::with_top(spec, mode, top, scale)
+        Self::with_top(spec, mode, top, scale, Some("k_reach"))
     }
 
     /// That of whole vectors, whose high legs are alike and of which one leg is low throughout.
     pub fn of_vectors(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
         let top = spec.inverter.largest_compare()?;
-        Self::with_top(spec, CommonMode::ClampedLow, top, scale)
+        Self::with_top(spec, CommonMode::ClampedLow, top, scale, Some("k_reach"))
     }
 
-    fn with_top(spec: &Spec, mode: CommonMode, top: u32, scale: &Scale) -> Result<Self, Error> {
+    /// That of a pair, of which one leg is low throughout; without effect in variants without pairs.
+    pub fn of_pair(spec: &Spec, is_used: bool, scale: &Scale) -> Result<Self, Error> {
+        let top = spec.inverter.largest_compare()?;
+        let name = is_used.then_some("k_line");
+        Self::with_top(spec, CommonMode::ClampedLow, top, scale, name)
+    }
+
+    /// That of three pulsed legs in variants without them.
+    pub fn unused(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
+        let top = spec.inverter.largest_compare()?;
+        Self::with_top(spec, CommonMode::Centred, top, scale, None)
+    }
+
+    /// `k_reach`: name of the coefficient for V_REACH on a measured bus, if it is used.
+    fn with_top(
+        spec: &Spec,
+        mode: CommonMode,
+        top: u32,
+        scale: &Scale,
+        k_reach: Option<&'static str>,
+    ) -> Result<Self, Error> {
         let inverter = &spec.inverter;
         let (period, readable) = (inverter.timer_period, inverter.largest_compare()?);
         let counts = match mode {
@@ -61,10 +81,9 @@ impl<W: Word> CommonModeRule<W> {
             mode,
             top: f64::from(top),
             second_top: f64::from(readable),
-            reach: if top == period {
-                Share::Bus
-            } else {
-                share("k_reach", counts)?
+            reach: match k_reach {
+                Some(name) if top < period => share(name, counts)?,
+                _ => Share::Bus,
             },
             second: (readable < top)
                 .then(|| share("k_second", f64::from(readable)))

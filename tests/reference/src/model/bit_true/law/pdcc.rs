@@ -16,6 +16,7 @@ pub struct Pdcc<W> {
     form: Form<W>,
     dead_time: DeadTime<W>,
     common_mode: CommonModeRule<W>,
+    of_pair: CommonModeRule<W>,
 }
 
 impl<W: Word> Pdcc<W> {
@@ -26,6 +27,7 @@ impl<W: Word> Pdcc<W> {
             form: Form::new(options.saturation == Saturation::TorquePriority, scale)?,
             dead_time: DeadTime::new(spec, scale)?,
             common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
+            of_pair: CommonModeRule::of_pair(spec, options.modulation == Modulation::Pair, scale)?,
         })
     }
 
@@ -43,7 +45,7 @@ impl<W: Word> Pdcc<W> {
         let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, limited);
         let shifts = self.dead_time.shifts(now, self.form.kept(now));
         let command = if self.pair && !now.commutating {
-            pulses::pair(now, u_unsat, shifts)
+            pulses::pair(now, u_unsat, shifts, &self.of_pair)
         } else {
             pulses::three(now, legs, shifts, &self.common_mode, self.pair)
         };

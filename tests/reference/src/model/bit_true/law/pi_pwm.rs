@@ -20,6 +20,7 @@ pub struct PiPwm<W> {
     integral_range: [f64; 2],
     dead_time: DeadTime<W>,
     common_mode: CommonModeRule<W>,
+    of_pair: CommonModeRule<W>,
 }
 
 impl<W: Word> PiPwm<W> {
@@ -37,7 +38,11 @@ impl<W: Word> PiPwm<W> {
             k_drop: scale.coefficient("k_drop", -scale.ohm * reference_gain(spec))?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
             dead_time: DeadTime::new(spec, scale)?,
-            common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
+            common_mode: match options.six_step {
+                Switch::On => CommonModeRule::unused(spec, scale)?,
+                Switch::Off => CommonModeRule::new(spec, options.common_mode, scale)?,
+            },
+            of_pair: CommonModeRule::of_pair(spec, options.six_step == Switch::On, scale)?,
             integral_range,
         })
     }
@@ -95,7 +100,8 @@ impl<W: Word> PiPwm<W> {
         let part = now.set_point + self.k_drop.mul(pair_current);
         let u = part + now.integral[0];
         // 10
-        let line = within(u * 2.0, -now.v_bus, now.v_bus);
+        let line_reach = self.of_pair.reach(now.v_bus);
+        let line = within(u * 2.0, -line_reach, line_reach);
         // 12
         let limited = halve(line);
         let [low, high] = self.integral_range;
@@ -117,7 +123,7 @@ impl<W: Word> PiPwm<W> {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, self.dead_time.shifts(now, flow)),
+            command: pulses::line(now, line, self.dead_time.shifts(now, flow), &self.of_pair),
             integral: [integral, word(0.0)],
             hysteresis: now.hysteresis,
             past: now.past,

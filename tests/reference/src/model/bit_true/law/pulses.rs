@@ -27,14 +27,8 @@ fn nominal<W: Word>(now: &Inputs<W>, t: W) -> W {
     }
 }
 
-/// The compare value of a leg that is high for the fraction `t` of the bus; `shift` compensates the
-/// dead time.
-#[inline]
-pub fn compare_of<W: Word>(now: &Inputs<W>, t: W, shift: W) -> u16 {
-    compare_up_to(now, t, shift, now.k.timer_period)
-}
-
-/// The same of a leg with the largest compare value `top`.
+/// The compare value, up to `top`, of a leg that is high for the fraction `t` of the bus; `shift` compensates the dead
+/// time.
 #[inline]
 pub fn compare_up_to<W: Word>(now: &Inputs<W>, t: W, shift: W, top: f64) -> u16 {
     compare(now, nominal(now, t) + shift, top)
@@ -70,18 +64,29 @@ pub fn three<W: Word>(
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` compensate the
 /// dead time.
 #[inline]
-pub fn pair<W: Word>(now: &Inputs<W>, u: [W; 2], shifts: [W; 3]) -> Command<W> {
+pub fn pair<W: Word>(
+    now: &Inputs<W>,
+    u: [W; 2],
+    shifts: [W; 3],
+    legs: &CommonModeRule<W>,
+) -> Command<W> {
     if now.sector_eff == 0 {
         return Command::idle(Legs::OFF);
     }
     let u = [u[0], u[1], -(u[0] + u[1])];
     let v = u[sector::PLUS[now.sector_eff]] - u[sector::MINUS[now.sector_eff]];
-    line(now, within(v, -now.v_bus, now.v_bus), shifts)
+    let reach = legs.reach(now.v_bus);
+    line(now, within(v, -reach, reach), shifts, legs)
 }
 
-/// The line voltage `v` of the conducting pair, clamped to the bus.
+/// The line voltage `v` of the conducting pair, clamped to what its legs reach.
 #[inline]
-pub fn line<W: Word>(now: &Inputs<W>, v: W, shifts: [W; 3]) -> Command<W> {
+pub fn line<W: Word>(
+    now: &Inputs<W>,
+    v: W,
+    shifts: [W; 3],
+    legs: &CommonModeRule<W>,
+) -> Command<W> {
     let mut command = Command::idle(Legs::OFF);
     let sector_eff = now.sector_eff;
     if sector_eff == 0 {
@@ -94,7 +99,7 @@ pub fn line<W: Word>(now: &Inputs<W>, v: W, shifts: [W; 3]) -> Command<W> {
         (minus, plus, -v)
     };
     let (mut compare, mut state) = ([0; 3], [LegState::Off; 3]);
-    compare[pulsed] = compare_of(now, t, shifts[pulsed]);
+    compare[pulsed] = compare_up_to(now, t, shifts[pulsed], legs.top);
     state[pulsed] = LegState::Pulsed;
     state[low] = LegState::Low;
     command.legs = Legs::new(compare, state);

@@ -12,6 +12,8 @@ pub struct Pdcc {
     options: crate::Pdcc,
     dead_time: DeadTime,
     common_mode: CommonModeRule,
+    /// One leg of a pair is low throughout, as of vectors.
+    of_pair: CommonModeRule,
     /// Largest plausible EMF, volt.
     v_largest: f64,
 }
@@ -22,6 +24,7 @@ impl Pdcc {
             options: *options,
             dead_time: DeadTime::new(spec),
             common_mode: CommonModeRule::new(spec, options.common_mode)?,
+            of_pair: CommonModeRule::of_vectors(spec)?,
             v_largest: spec.inverter.v_bus_max()?,
         })
     }
@@ -39,7 +42,7 @@ impl Pdcc {
         );
         let legs = self.common_mode.readable(&limited.u, now.v_bus);
         let command = if options.modulation == Modulation::Pair && !now.commutating {
-            pulses::pair(now, &phases(&u_unsat), &shifts)
+            pulses::pair(now, &phases(&u_unsat), &shifts, self.of_pair)
         } else {
             pulses::three(now, &legs, &shifts, self.common_mode)
         };

@@ -23,6 +23,8 @@ pub struct PiPwm {
     integral_max: f64,
     dead_time: DeadTime,
     common_mode: CommonModeRule,
+    /// One leg of a pair is low throughout, as of vectors.
+    of_pair: CommonModeRule,
 }
 
 impl PiPwm {
@@ -34,6 +36,7 @@ impl PiPwm {
             k_i: spec.inverter.t_s / options.integral_time,
             dead_time: DeadTime::new(spec),
             common_mode: CommonModeRule::new(spec, options.common_mode)?,
+            of_pair: CommonModeRule::of_vectors(spec)?,
             integral_max: spec.inverter.v_bus_max()?,
         })
     }
@@ -78,7 +81,8 @@ impl PiPwm {
         let [held, _] = to_ab(&now.integral);
         let part = (now.set_point - pair_current) * self.k_p;
         let u = part + held;
-        let line = (2.0 * u).clamp(-now.v_bus, now.v_bus);
+        let reach = self.of_pair.reach(now.v_bus);
+        let line = (2.0 * u).clamp(-reach, reach);
         let integral = (held + (part + line / 2.0 - u) * self.k_i)
             .clamp(-self.integral_max, self.integral_max);
         let of_pair = |u: f64| {
@@ -97,7 +101,7 @@ impl PiPwm {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0)),
+            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0), self.of_pair),
             integral: [integral, 0.0],
             rises: now.rises,
             past: now.past,

@@ -36,16 +36,22 @@ pub fn three(
 
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` are shares of the
 /// period.
-pub fn pair(now: &Inputs, u: &Vector3<f64>, shifts: &Vector3<f64>) -> Command {
+pub fn pair(
+    now: &Inputs,
+    u: &Vector3<f64>,
+    shifts: &Vector3<f64>,
+    legs: CommonModeRule,
+) -> Command {
     if now.sector_eff == 0 {
         return Command::idle(Duties::OFF);
     }
     let v = u[sector::PLUS[now.sector_eff]] - u[sector::MINUS[now.sector_eff]];
-    line(now, v.clamp(-now.v_bus, now.v_bus), shifts)
+    let reach = legs.reach(now.v_bus);
+    line(now, v.clamp(-reach, reach), shifts, legs)
 }
 
-/// The line voltage `v` of the conducting pair, clamped to the bus.
-pub fn line(now: &Inputs, v: f64, shifts: &Vector3<f64>) -> Command {
+/// The line voltage `v` of the conducting pair, clamped to what its legs reach.
+pub fn line(now: &Inputs, v: f64, shifts: &Vector3<f64>, legs: CommonModeRule) -> Command {
     let mut command = Command::idle(Duties::OFF);
     let (sector_eff, v_bus) = (now.sector_eff, now.v_bus);
     if sector_eff == 0 {
@@ -58,7 +64,7 @@ pub fn line(now: &Inputs, v: f64, shifts: &Vector3<f64>) -> Command {
         (minus, plus)
     };
     command.terminal[pulsed] = v.abs();
-    command.duties.duty[pulsed] = (v.abs() / v_bus + shifts[pulsed]).clamp(0.0, 1.0);
+    command.duties.duty[pulsed] = (v.abs() / v_bus + shifts[pulsed]).clamp(0.0, legs.top);
     command.duties.state[pulsed] = LegState::Pulsed;
     command.duties.state[low] = LegState::Low;
     command.off = Some(sector::OUT_PHASE[sector_eff]);
