@@ -229,12 +229,14 @@ fn turns_off(l: &Lowering<'_>) -> bool {
 
 /// Sum of the magnitudes of the currents whose legs are pulsed.
 fn switched<'b>(l: &Lowering<'b>, currents: Phases<'b, 3>, command: &Command<'b>) -> Expr<'b> {
+    // Without a common mode a leg may be low or off.
+    let all_pulsed = l.spec.controller.common_mode().is_some();
     let each = Phases::<3>::each(|x| {
         let magnitude = currents.0[x].abs();
-        if turns_off(l) {
-            command.legs.0[x].is(PULSED).choose(magnitude, 0)
-        } else {
+        if all_pulsed {
             magnitude
+        } else {
+            command.legs.0[x].is(PULSED).choose(magnitude, 0)
         }
     });
     each.sum()
