@@ -186,7 +186,7 @@ fn warn_of_trip(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
 /// A vector that lasts a whole period must not change the current by more than the rated current.
 fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let high = inverter.greatest_bus() * inverter.reach_share();
+    let high = inverter.greatest_bus() * spec.reach_share();
     let stride = design.plant.gain * 2.0 / 3.0 * high;
     if stride > motor.rated_current {
         let at = origins.at("controller.kind");
@@ -208,7 +208,7 @@ fn check_stride(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mu
 /// triangle's centre from its edges.
 fn check_miss(spec: &Spec, design: &LoopDesign, origins: &Origins, errors: &mut Collector) {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let side = 2.0 / 3.0 * inverter.greatest_bus() * inverter.reach_share();
+    let side = 2.0 / 3.0 * inverter.greatest_bus() * spec.reach_share();
     let miss = design.plant.gain * side / 12_f64.sqrt();
     if miss > motor.rated_current {
         let at = origins.at("controller.modulated");

@@ -17,7 +17,7 @@ pub const MUTATED: &[Drive] = &[
     },
     Drive {
         kind: "pdcc",
-        motor: "hoverboard-hub",
+        motor: "anaheim-bly341s",
         settings: &[
             ("modulation", "pair"),
             ("saturation", "nearest"),

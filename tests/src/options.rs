@@ -54,7 +54,7 @@ pub type Meeting = ((usize, usize), (usize, usize));
 /// Placeholder of a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
-/// Placeholder of a voltage of a quarter of the motor's bus.
+/// Placeholder of a voltage of a quarter of the motor's bus; on a board, whose limits are nearer, of a twentieth.
 const FADE: &str = "\"fade\"";
 /// A tenth and a twenty-fifth of the ADC's range, which every motor draws and returns more than.
 const DRAWN: &str = "\"drawn\"";
@@ -579,7 +579,7 @@ impl Kind {
     /// The motor's file with this controller and its options, and another type name.
     ///
     /// # Panics
-    /// If the motor file is no TOML, or has no bus voltage or ADC range.
+    /// If the motor file is no TOML or not right.
     pub fn drive_toml(&self, motor: &Motor, choice: &[usize], type_name: Option<&str>) -> String {
         let mut document: DocumentMut = motor.text.parse().expect("a TOML file");
         let text = |value: &str| -> Item {
@@ -588,8 +588,7 @@ impl Kind {
                 .expect("a TOML value")["x"]
                 .clone()
         };
-        let [bus, range] = [("bus_voltage", 'V'), ("adc_range", 'A')]
-            .map(|(field, unit)| of_inverter(&document, field, unit));
+        let Supply { bus, range, fade } = Supply::of(&motor.text);
         let volts = |share: f64| text(&format!("\"{} V\"", bus * share));
         let amperes = |share: f64| text(&format!("\"{} A\"", range * share));
         document["controller"] = Item::Table(Table::new());
@@ -598,7 +597,7 @@ impl Kind {
             for (section, field, setting) in &axis.values[value].settings {
                 document[*section][*field] = match setting.as_str() {
                     BUS_RANGE => volts(1.6),
-                    FADE => volts(0.25),
+                    FADE => volts(fade),
                     DRAWN => amperes(0.1),
                     RETURNED => amperes(0.04),
                     _ => text(setting),
@@ -631,21 +630,29 @@ fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
-/// A number of the inverter of a motor file, in this unit.
-fn of_inverter(document: &DocumentMut, field: &str, unit: char) -> f64 {
-    let stated = document.get("inverter").and_then(|table| table.get(field));
-    let assumed = || {
-        let table = document.get("assumed")?.get("inverter")?;
-        table.get(field)?.get("value")
-    };
-    let text = stated
-        .or_else(assumed)
-        .and_then(Item::as_str)
-        .unwrap_or_else(|| panic!("no {field}"));
-    let number = text.trim_end_matches(unit).trim();
-    number
-        .parse()
-        .unwrap_or_else(|_| panic!("{field}: {text} is not in {unit}"))
+/// Numbers of a motor file's inverter, of which its board may have written a part.
+struct Supply {
+    /// Volt.
+    bus: f64,
+    /// Range of the ADCs, ampere.
+    range: f64,
+    /// [`FADE`] over the bus.
+    fade: f64,
+}
+
+impl Supply {
+    fn of(text: &str) -> Self {
+        let ast = parse_toml(text, "motor.toml");
+        let has_board = ast.as_ref().is_ok_and(|ast| ast.board.is_some());
+        let checked = ast.and_then(|ast| check(&ast));
+        let (spec, _) = checked.unwrap_or_else(|errors| panic!("{errors}"));
+        let inverter = spec.inverter;
+        Self {
+            bus: inverter.v_bus,
+            range: inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1)),
+            fade: if has_board { 0.05 } else { 0.25 },
+        }
+    }
 }
 
 /// The generator's result for a TOML text.

@@ -47,7 +47,7 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// Hall sensors. Later knowledge only helps, and a slow filter may never gain it. So the current
 /// is the closed loop's response to an EMF that appears at once and turns: for prediction without
 /// an EMF, one period of it before the first sample that shows it and, with delay 1, one more. The
-/// lowest bus must exceed the whole EMF; beyond that diodes conduct or voltage is missing, and
+/// part of the lowest bus that legs reach must exceed the whole EMF; beyond that diodes conduct or voltage is missing, and
 /// nothing is promised. Controllers of whole vectors add the step of one vector, or with two
 /// vectors the greatest distance from the line between them. A speed loop brakes once it knows the
 /// speed, a sector later at the earliest, when a slow filter has not learned the EMF yet. Samples
@@ -56,7 +56,8 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let options = spec.controller.common();
-    let most = (inverter.lowest_bus() / line).min(inverter.maximum_speed);
+    let lowest = spec.reach_share() * inverter.lowest_bus();
+    let most = (lowest / line).min(inverter.maximum_speed);
     if spec
         .waiting_speed()
         .is_some_and(|from| inverter.minimum_speed <= from)
@@ -75,15 +76,9 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
         ..design.clone()
     };
     let start = law.start(slow);
-    let is_pulsed = law.period() == Period::Pulses;
-    let reach = if is_pulsed {
-        1.0
-    } else {
-        inverter.reach_share()
-    };
-    let met = most.min(start.part_of_bus * reach * inverter.lowest_bus() / line);
+    let met = most.min(start.part_of_bus * lowest / line);
     let periods = f64::from(options.delay + 1);
-    let vector = design.plant.gain * 2.0 / 3.0 * reach * inverter.greatest_bus();
+    let vector = design.plant.gain * 2.0 / 3.0 * spec.reach_share() * inverter.greatest_bus();
     let per_volt = law
         .linear(spec, &resting)
         .map_or(design.plant.gain * periods, |linear| {

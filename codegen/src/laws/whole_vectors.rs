@@ -152,11 +152,11 @@ pub(super) fn pulsed_legs(spec: &Spec) -> Vec<String> {
         format!(
             "A high leg is pulsed with compare value {top}, so that it is low for {} of each PWM period: every vector has {} of its",
             engineering(low, "s"),
-            percent(inverter.reach_share())
+            percent(spec.reach_share())
         ),
         format!(
             "voltage, {} of a high leg at the nominal bus, and a high leg switches with the PWM, at {}. Where stages compare",
-            engineering(inverter.v_bus * inverter.reach_share(), "V"),
+            engineering(inverter.v_bus * spec.reach_share(), "V"),
             frequency(1.0 / inverter.pwm_period())
         ),
         "vectors with parts of the bus, parts of a high leg's voltage are meant.".to_owned(),

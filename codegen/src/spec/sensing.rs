@@ -1,7 +1,7 @@
 //! Where the phase currents are measured, and how long a leg must be low for it.
 
-use super::InverterSpec;
 use super::words::words;
+use super::{CommonMode, InverterSpec, Spec};
 
 words! {
     /// Which phases have a current sensor.
@@ -152,9 +152,12 @@ impl InverterSpec {
         self.window().map(|window| self.counts_less(window.before))
     }
 
-    /// Share of the bus voltage that a leg with the largest readable compare value has.
-    pub fn reach_share(&self) -> f64 {
-        f64::from(self.readable_top()) / f64::from(self.timer_period)
+    /// Largest difference of the compare values of three pulsed legs: centred ones leave as much below as above.
+    fn reach(&self, common_mode: CommonMode) -> u32 {
+        match common_mode {
+            CommonMode::Centred => 2 * self.readable_top() - self.timer_period,
+            CommonMode::Readable | CommonMode::ClampedLow => self.highest_top(),
+        }
     }
 
     /// Largest compare value of any leg: `timer_period`, less what `minimum_low_time` takes.
@@ -166,6 +169,21 @@ impl InverterSpec {
     fn counts_less(&self, half_low: f64) -> u32 {
         let counts = low_counts(half_low, self.pwm_period(), self.timer_period);
         self.timer_period.saturating_sub(counts)
+    }
+}
+
+impl Spec {
+    /// Largest difference of two legs' compare values; without a common mode one of them is low throughout.
+    pub fn reach(&self) -> u32 {
+        match self.controller.common_mode() {
+            Some(common_mode) => self.inverter.reach(common_mode),
+            None => self.inverter.readable_top(),
+        }
+    }
+
+    /// The same as a share of the bus voltage.
+    pub fn reach_share(&self) -> f64 {
+        f64::from(self.reach()) / f64::from(self.inverter.timer_period)
     }
 }
 

@@ -34,24 +34,37 @@ fn numbers(file: &BoardFile) -> Numbers {
     }
 }
 
-/// The trip level that a motor's file states, ampere.
-fn stated_trip(motor: &SpecAst) -> Option<f64> {
-    match &motor.inverter.field("trip_current")?.value {
-        Value::Number(number) => Some(number.si()),
-        _ => None,
+/// What a motor's file states of its inverter.
+struct Stated {
+    /// Ampere.
+    trip: Option<f64>,
+    /// Whether it says the frequency of the PWM; a motor with a board of its own leaves that to it.
+    frequency: bool,
+}
+
+fn stated(motor: &SpecAst) -> Stated {
+    let field = |name: &str| motor.inverter.field(name).map(|field| &field.value);
+    Stated {
+        trip: match field("trip_current") {
+            Some(Value::Number(number)) => Some(number.si()),
+            _ => None,
+        },
+        frequency: field("f_pwm").is_some(),
     }
 }
 
 /// What keeps a motor from a board, by their numbers alone.
-fn obstacle(board: &Numbers, motor: &Spec, trip: Option<f64>) -> Option<&'static str> {
+fn obstacle(board: &Numbers, motor: &Spec, stated: &Stated) -> Option<&'static str> {
     let (reach, max) = (2048.0 * board.gain, motor.inverter.max_current);
     let period = board.period.unwrap_or(motor.inverter.t_s);
     let electrical = motor.inverter.maximum_speed * f64::from(motor.motor.pole_pairs);
     let turns = electrical * period / std::f64::consts::TAU;
     let per_period = motor.motor.resistance * period / motor.motor.inductance;
-    if motor.inverter.v_bus < board.bus[0] || motor.inverter.v_bus > board.bus[1] {
+    if board.period.is_none() && !stated.frequency {
+        Some("HX0105")
+    } else if motor.inverter.v_bus < board.bus[0] || motor.inverter.v_bus > board.bus[1] {
         Some("HX0330")
-    } else if trip.is_some_and(|trip| trip > reach - board.gain) {
+    } else if stated.trip.is_some_and(|trip| trip > reach - board.gain) {
         Some("HX0306")
     } else if reach < motor.motor.rated_current.max(max) {
         Some("HX0305")
@@ -81,7 +94,7 @@ fn a_motor_fits_a_board_by_voltage_current_and_time_constant() {
             };
             let pair = format!("{} on {}", fit.motor, entry.name);
             let reason = fit.reason.as_deref().unwrap_or_default();
-            let obstacle = obstacle(&numbers, &own.spec, stated_trip(&motor.ast));
+            let obstacle = obstacle(&numbers, &own.spec, &stated(&motor.ast));
             match obstacle {
                 Some(code) => assert!(reason.contains(code), "{pair}: {code}, not {reason:?}"),
                 None => assert!(fit.fits, "{pair}: {reason}"),

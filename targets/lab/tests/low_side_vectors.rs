@@ -89,7 +89,7 @@ fn each_drive(check: impl Fn(&str, &Prepared, &Prepared) + Sync) {
     let drives: Vec<_> = drives.collect();
     drives.into_par_iter().for_each(|(motor, variant)| {
         let low_side = drive(motor, variant, LOW_SIDE, 1.0);
-        let reach = low_side.spec.inverter.reach_share();
+        let reach = low_side.spec.reach_share();
         let in_phase = drive(motor, variant, "", reach);
         check(&format!("{motor}, {variant}"), &low_side, &in_phase);
     });

@@ -98,7 +98,9 @@ impl Case {
         let mut fields = String::new();
         if !matches!(bus, Bus::Fixed) {
             let range = 1.6 * inverter.v_bus;
+            // At the ends of its range the bus itself would trip a drive on a board that states them.
             fields += "v_bus = \"measured\"\nbus_adc_bits = 12\n";
+            fields += "over_voltage = \"0 V\"\nunder_voltage = \"0 V\"\n";
             let _ = writeln!(fields, "bus_adc_range = \"{range:.3} V\"");
         }
         if let Some(trip) = trip {

@@ -10,7 +10,7 @@ const TITLE: &str = "Finite-control-set model predictive current controller";
 
 /// Documentation of the method.
 pub(super) fn describe(spec: &Spec, options: &FcsMpcSpec, design: &LoopDesign) -> Description {
-    let high = spec.inverter.v_bus * spec.inverter.reach_share();
+    let high = spec.inverter.v_bus * spec.reach_share();
     let stride = design.plant.gain * 2.0 / 3.0 * high;
     let begin = if options.modulated {
         "The chosen voltage vector is the"

@@ -120,8 +120,7 @@ pub(super) fn state_score<'b>(l: &Lowering<'b>, score: Expr<'b>, shift: u32) {
 
 /// States the error bound of a score over `weight` times the voltage of a high leg on the largest bus.
 pub(super) fn state_score_over_bus<'b>(l: &Lowering<'b>, voltage: Expr<'b>, weight: f64) {
-    let inverter = &l.spec.inverter;
-    let high = inverter.greatest_bus() * inverter.reach_share();
+    let high = l.spec.inverter.greatest_bus() * l.spec.reach_share();
     let word = weight * high / l.scale.voltage();
     l.b.state_error("score", voltage, [SCORE, "V^2"], word);
 }

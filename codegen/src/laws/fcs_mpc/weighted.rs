@@ -26,8 +26,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (l, pair) = (self.l, u);
         let changes = memory.map(|memory| {
             let volts = 9.0 * (self.design.k_di * options.switching_weight).powi(2);
-            let inverter = &l.spec.inverter;
-            let volts = volts / (inverter.v_bus * inverter.reach_share());
+            let high = l.spec.inverter.v_bus * l.spec.reach_share();
+            let volts = volts / high;
             Changes::new(l, memory, volts, options.switching_weight)
         });
         let doc = "Third phase of the deadbeat voltage.";

@@ -26,7 +26,7 @@ fn name(vector: i32) -> String {
 
 /// Documentation and constants of the method.
 pub(super) fn describe(spec: &Spec, options: &PhccSpec, design: &LoopDesign) -> Description {
-    let high = spec.inverter.v_bus * spec.inverter.reach_share();
+    let high = spec.inverter.v_bus * spec.reach_share();
     let stride = design.plant.gain * 2.0 / 3.0 * high;
     let table = switching_table(options, spec.motor.emf_shape);
     let mut notes = vec![

@@ -1,5 +1,6 @@
 //! The motor library passes the checks, and says where its data come from.
 
+use crate::diagnostics::{Code, Diagnostic};
 use crate::spec::{SpecAst, check, parse_toml};
 use std::path::PathBuf;
 
@@ -50,9 +51,16 @@ fn every_library_motor_passes_with_captured_edges_and_every_option() {
         ] {
             let mut ast = ast.clone();
             crate::spec::apply_variant(&mut ast, variant).expect("variant parses");
-            if let Err(errors) = check(&ast) {
-                panic!("{name} {variant}: {errors}");
-            }
+            let Err(errors) = check(&ast) else {
+                continue;
+            };
+            // A motor may be on a board that cannot read legs that are off.
+            let is_unreadable = |error: Diagnostic| error.code == Code::UnreadableLeg;
+            let text = errors.to_string();
+            assert!(
+                variant.contains("pair") && errors.into_iter().all(is_unreadable),
+                "{name} {variant}: {text}"
+            );
         }
     }
 }

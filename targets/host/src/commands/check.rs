@@ -6,7 +6,7 @@
 use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{HallCapture, Reference};
+use hexagen_codegen::spec::{HallCapture, Reference, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::text::significant;
@@ -68,7 +68,7 @@ pub struct Checked {
     pub torque_nm: f64,
     /// Voltage that the rating takes, line to line, volt.
     pub rating_v: f64,
-    /// Speed at which rated current takes the whole bus, rpm.
+    /// Speed at which rated current takes all that legs reach of the bus, rpm.
     pub bus_limit_rpm: f64,
     /// ADC counts of the rated current.
     pub rated_counts: f64,
@@ -122,7 +122,8 @@ impl Checked {
             .collect::<Result<Vec<_>, Failure>>()?;
         let line_to_line = motor.emf_constant * motor.emf_shape.line_to_line_peak();
         let drop = 2.0 * motor.resistance * motor.rated_current;
-        let bus_limit = (inverter.v_bus - drop) / line_to_line;
+        let reach = inverter.v_bus * drive.spec.reach_share();
+        let bus_limit = (reach - drop) / line_to_line;
         let mut checked = Self {
             motor: drive.motor.clone(),
             controller: drive.variant.clone(),
@@ -232,8 +233,9 @@ impl Checked {
                 engineering(inverter.trip_current, "A"),
             ),
             format!(
-                "bus         the rating takes {} of {}; rated current lasts to {:.0} rpm",
+                "bus         the rating takes {}{} of {}; rated current lasts to {:.0} rpm",
                 engineering(self.rating_v, "V"),
+                reached(&drive.spec),
                 engineering(inverter.v_bus, "V"),
                 self.bus_limit_rpm,
             ),
@@ -277,6 +279,16 @@ impl Checked {
             (None, None) => format!("{head} no torque"),
         }
     }
+}
+
+/// What the legs reach of the bus, where they must be low for a while.
+fn reached(spec: &Spec) -> String {
+    let share = spec.reach_share();
+    if share >= 1.0 {
+        return String::new();
+    }
+    let reach = engineering(spec.inverter.v_bus * share, "V");
+    format!("; legs reach {reach}")
 }
 
 /// The fixed-point program at a speed, in rad/s, with the demanded torque.

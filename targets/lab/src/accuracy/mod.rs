@@ -149,7 +149,7 @@ fn settled<C: CurrentLoop>(
 ) -> (Trace, Option<Trip>, C) {
     let mut closed = ClosedLoop::new(motor, controller, run.delay);
     closed.run(settling, &mut ());
-    let mut trace = Trace::new(closed.plant(), measured);
+    let mut trace = Trace::of_run(closed.plant(), run, measured);
     closed.run(measured, &mut trace);
     (trace, closed.tripped(), closed.into_controller())
 }

@@ -40,6 +40,8 @@ pub struct RunOptions {
     /// Seconds that a drive with a rotor at standstill waits for its angle before it settles. (Where the
     /// rotor turns, half a turn of settling gives the angle.)
     pub wait: f64,
+    /// Largest difference of two legs' compare values, where it is less than the timer's period.
+    pub reach: Option<u16>,
     /// Target of a speed loop; `None` if the speed is held or free.
     pub aim: Option<Aim>,
 }
@@ -63,6 +65,7 @@ impl RunOptions {
             commutation_threshold: 0.5,
             starts: STARTS.to_vec(),
             wait: 0.0,
+            reach: None,
             aim: None,
         }
     }
@@ -109,7 +112,7 @@ fn run_start<C: CurrentLoop>(
     let (settling, measured) = options.periods(params);
     let mut closed = ClosedLoop::new(plant, controller, options.delay);
     closed.run(settling, &mut ());
-    let mut trace = Trace::new(closed.plant(), measured);
+    let mut trace = Trace::of_run(closed.plant(), options, measured);
     closed.run(measured, &mut trace);
     Ok((trace, closed.tripped()))
 }
@@ -177,7 +180,7 @@ pub fn record<C: CurrentLoop>(
     let start = options.starts.first().copied().unwrap_or(STARTS[0]);
     let plant = Plant::new(params.clone(), start, options.omega_m)?;
     let periods = (duration / params.t_s).round() as usize;
-    let mut trace = Trace::new(&plant, periods);
+    let mut trace = Trace::of_run(&plant, options, periods);
     ClosedLoop::new(plant, controller, options.delay).run(periods, &mut trace);
     Ok(trace)
 }

@@ -2,7 +2,7 @@
 //!
 //! Bins of 2.5 us (a whole number per period) hold exact means, integrated on the solution.
 
-use super::{Recorder, Step};
+use super::{Recorder, RunOptions, Step};
 use crate::plant::{Observer, Segment, Series, TERMS, clarke, integral, sector_of};
 use hexagen::{LegState, Legs};
 use serde::Serialize;
@@ -84,7 +84,8 @@ pub struct Trace {
     /// Greatest torque of that current through a pair of phases, in newton metres.
     pub torque_floor: f64,
     t_s: f64,
-    timer_period: u16,
+    /// Difference of two compare values at the edge of the hexagon.
+    reach: u16,
     turn_ons: u64,
     open: [f64; 3],
     open_theta: f64,
@@ -123,11 +124,20 @@ impl Trace {
             current_floor,
             torque_floor: 2.0 * k_phase * current_floor,
             t_s,
-            timer_period: params.timer_period,
+            reach: params.timer_period,
             turn_ons: plant.turn_ons(),
             open: [0.0; 3],
             open_theta: 0.0,
             filled: 0,
+        }
+    }
+
+    /// The same of a run's drive.
+    pub fn of_run(plant: &crate::plant::Plant, run: &RunOptions, periods: usize) -> Self {
+        let trace = Self::new(plant, periods);
+        Self {
+            reach: run.reach.unwrap_or(trace.reach),
+            ..trace
         }
     }
 
@@ -300,8 +310,8 @@ impl Observer for Trace {
     }
 }
 
-/// Whether a command is on the edge of the voltage hexagon.
-fn saturated(legs: Legs, timer_period: u16) -> bool {
+/// Whether a command is on the edge of the voltage hexagon of legs that reach so many counts.
+fn saturated(legs: Legs, reach: u16) -> bool {
     let driven = (0..3).filter(|&x| legs.state()[x] != LegState::Off);
     let values = driven.map(|x| {
         if legs.state()[x] == LegState::Pulsed {
@@ -311,7 +321,7 @@ fn saturated(legs: Legs, timer_period: u16) -> bool {
         }
     });
     let (least, most) = values.fold((u16::MAX, 0), |(low, high), c| (low.min(c), high.max(c)));
-    least == 0 && most >= timer_period
+    most >= least.saturating_add(reach)
 }
 
 impl Recorder for Trace {
@@ -335,7 +345,7 @@ impl Recorder for Trace {
             torque_mean: after.mean_torque,
             v_alpha_mean,
             v_beta_mean,
-            saturated: saturated(step.applied, self.timer_period),
+            saturated: saturated(step.applied, self.reach),
             turn_ons: (turn_ons - self.turn_ons) as u32,
         });
         self.turn_ons = turn_ons;

@@ -69,6 +69,7 @@ pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
         },
         commutation_threshold: controller.commutation_threshold,
         wait: f64::from(spec.start_periods()) * spec.inverter.t_s,
+        reach: Some(spec.reach() as u16),
         ..RunOptions::new(omega_m, torque.clamp(-reach, reach) / per_ampere)
     }
 }
