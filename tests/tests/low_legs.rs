@@ -65,6 +65,13 @@ const CHOICES: [&str; 4] = [
     "switching_weight = \"0.4 A\"\ntorque_weight = 0.6",
 ];
 
+/// The same sensors read before the turning point: behind it a leg may be off. The window before it is as long as without
+/// the lead.
+fn earlier(legs: &str) -> String {
+    let settled = legs.replace("settling_time = \"1 us\"", "settling_time = \"800 ns\"");
+    settled + "sampling_lead = \"200 ns\"\n"
+}
+
 /// Pulses of a pair of legs, the third off.
 const PAIRS: [&str; 4] = [
     "kind = \"pdcc\"\nmodulation = \"pair\"",
@@ -106,7 +113,8 @@ fn each_drive(check: impl Fn(&str, &str)) {
             &format!("{controller}\ncandidates = \"three_phase\""),
         );
     }
-    for inverter in [BOOTSTRAP, &bootstrap, &three, &three_measured] {
+    let [early, early_measured] = [&three, &three_measured].map(|legs| earlier(legs));
+    for inverter in [BOOTSTRAP, &bootstrap, &early, &early_measured] {
         for controller in turning_off() {
             check(inverter, &controller);
         }

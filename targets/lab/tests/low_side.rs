@@ -140,6 +140,36 @@ fn of_three_sensors_two_are_enough_and_the_legs_reach_further() {
     }
 }
 
+/// Controllers that turn a leg off: its current, which may flow through the upper diode, is the rest of the other two.
+const TURNING_OFF: [&str; 5] = [
+    "kind = \"pdcc\"\nmodulation = \"pair\"\nemf = \"model\"",
+    "kind = \"pi-pwm\"\nsix_step = \"on\"",
+    "kind = \"fcs-mpc\"",
+    "kind = \"fcs-mpc\"\ncandidates = \"all\"",
+    "kind = \"phcc\"",
+];
+
+#[test]
+fn of_three_sensors_two_show_the_current_of_a_leg_that_is_off() {
+    // All three conversions end before the next command may turn a leg off.
+    let early = three() + "sampling_lead = \"1 us\"\n";
+    for controller in TURNING_OFF {
+        for rpm in [-1000.0, 300.0, 700.0, 1200.0] {
+            let in_phase = run_on("", "", controller, rpm);
+            let three = run_on(&early, &early, controller, rpm);
+            let text = format!(
+                "{controller} at {rpm} rpm: {} and {} Nm",
+                three.torque, in_phase.torque
+            );
+            assert_eq!((three.blind, three.fault), (0, None), "{text}");
+            assert!(
+                (three.torque / in_phase.torque - 1.0).abs() < 0.03,
+                "{text}"
+            );
+        }
+    }
+}
+
 /// Their sum shows a sensor that is wrong, and nothing else: no other fault comes first.
 #[test]
 fn the_sum_of_three_currents_shows_a_wrong_sensor() {

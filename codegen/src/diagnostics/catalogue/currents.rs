@@ -285,11 +285,31 @@ pub fn unreadable_leg(
         Code::UnreadableLeg,
         at,
         format!(
-            "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with `current_sensing: in_phase`",
+            "`{}`: {} turns legs off, and the current of an off leg whose upper diode conducts does not flow through a sensor in its low leg: with two of them (`sensed_phases` {}) it cannot be known; choose `{}`, or a board with three sensors or with `current_sensing: in_phase`",
             option, value, phases.given, instead,
         ),
     );
     with_parts(error, &[place, phases])
+}
+
+/// A controller that turns legs off where three low legs have sensors, of which one may be read while its leg turns off;
+/// `lead`, second, is early enough.
+pub fn leg_turned_off_early(
+    at: &Location,
+    [option, value, instead]: [&str; 3],
+    given: &Part,
+    lead: f64,
+) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::UnreadableLeg,
+        at,
+        format!(
+            "`{option}`: {value} turns legs off, and a sensor in a low leg must be read before its leg may turn off: `sampling_lead` of {} has to be {} at least, for aperture and conversions; state that, or choose `{instead}`",
+            given.given,
+            engineering(at_least(lead), "s"),
+        ),
+    );
+    with_parts(error, &[given])
 }
 
 /// The residual watch allows for `allowed` volts at standstill with the largest set-point, as written or

@@ -27,9 +27,16 @@ impl Sensing {
     }
 
     /// Whether all three currents are known while a leg is off: that of an off leg whose upper diode conducts does not
-    /// flow through its low leg, but of three sensors the other two show it.
+    /// flow through its low leg. Of three sensors the other two show it, if they are read before the next command may
+    /// turn one of their legs off.
     pub fn reads_off_legs(&self) -> bool {
-        self.phases == SensedPhases::Abc || !matches!(self.place, Some(CurrentSensing::LowSide(_)))
+        match self.place {
+            Some(CurrentSensing::LowSide(times)) => {
+                let is_early = times.window(0.0, self.phases.phases().len()).after <= 1e-12;
+                self.phases == SensedPhases::Abc && is_early
+            }
+            _ => true,
+        }
     }
 }
 

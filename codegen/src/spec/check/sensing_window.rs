@@ -4,7 +4,7 @@ use super::inverter::Inverter;
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::ast::Section;
 use crate::spec::reader::Reader;
-use crate::spec::{ControllerSpec, CurrentSensing};
+use crate::spec::{ControllerSpec, CurrentSensing, SensedPhases};
 
 /// Least share of the period that a leg may be high: below it not even the zero voltage of centred pulses, half the
 /// period each, could be read.
@@ -59,12 +59,13 @@ pub(super) fn check(
         let at = options
             .field(off.option)
             .map_or(&place.location, |field| &field.location);
-        errors.push(catalogue::unreadable_leg(
-            at,
-            [off.option, off.value, off.instead],
-            &place,
-            &phases,
-        ));
+        let setting = [off.option, off.value, off.instead];
+        errors.push(if sensing.phases == SensedPhases::Abc {
+            let lead = reader.part("sampling_lead", || engineering(times.lead, "s"));
+            catalogue::leg_turned_off_early(at, setting, &lead, times.lead + window.after)
+        } else {
+            catalogue::unreadable_leg(at, setting, &place, &phases)
+        });
     }
     Some(())
 }
