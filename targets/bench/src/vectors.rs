@@ -314,7 +314,7 @@ impl<'g> Recorder<'g> {
         let offset = f64::from(drive.spec.inverter.adc_offset);
         for _ in 0..STRETCH {
             let context = Context {
-                offset: [offset; 2],
+                offset: [offset; 3],
                 tripped: self.fault().is_some(),
             };
             let (action, sample) = stimulus.next(&context);
