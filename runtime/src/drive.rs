@@ -220,7 +220,9 @@ impl<C: Control> ControlLoop<'_, C> {
         let (law, words) = (&mut core.law, &set_point.words);
         let mut observation = Observation::default();
         let command = C::step(law, words, &checked, rotor, &mut observation);
-        core.supervisor.follow_command(sensors, command.on());
+        if sensors.third.is_some() {
+            core.supervisor.follow_command(sensors, command.on());
+        }
         if set_point.signals.is_asked() {
             let on = command.on();
             set_point.signals.answer(checked, on, observation);

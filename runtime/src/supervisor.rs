@@ -1,5 +1,9 @@
 //! Supervision of a drive: faults, calibration, start-up. The same code for all drives; [`Limits`]
 //! has the differences.
+#![expect(
+    clippy::inline_always,
+    reason = "what three sensors need vanishes for two only where their constants are seen"
+)]
 
 #[cfg(test)]
 mod tests;
@@ -145,16 +149,16 @@ impl Limits {
     }
 
     /// Currents of the sensors' phases in words of current; `offsets` are words of current, too.
-    #[inline]
+    #[inline(always)]
     fn measured(&self, sensors: &Sensors, counts: [Word; 3], offsets: [Word; 3]) -> [Word; 3] {
         let [first, second, third] = sensors.all(self);
-        let [first_count, second_count, third_count] =
-            counts.map(|count| count << self.current_bits);
+        let [first_count, second_count, third_count] = counts;
         let [first_offset, second_offset, third_offset] = offsets;
+        let bits = self.current_bits;
         [
-            first.current(first_count, first_offset),
-            second.current(second_count, second_offset),
-            third.current(third_count, third_offset),
+            first.current(first_count << bits, first_offset),
+            second.current(second_count << bits, second_offset),
+            third.current(third_count << bits, third_offset),
         ]
     }
 
@@ -626,7 +630,8 @@ impl Supervisor {
         is_demanded: impl FnOnce() -> bool,
     ) -> Option<Checked> {
         let adc = sensors.phases.of(sample.adc);
-        let i = self.sensed(limits, sensors, adc.map(Word::from));
+        let [first, second, third] = adc;
+        let i = self.sensed(limits, sensors, [first.into(), second.into(), third.into()]);
         let hall = limits.hall_of(sample);
         let is_sound = self.is_sound(limits, hall);
         let is_edge = self.watch_hall(limits, hall, is_sound);
@@ -646,7 +651,7 @@ impl Supervisor {
     }
 
     /// The leg that the sample does not show.
-    #[inline]
+    #[inline(always)]
     const fn unread(&self, sensors: &Sensors) -> Unread {
         match sensors.third {
             None => Unread::Third,
@@ -656,7 +661,7 @@ impl Supervisor {
     }
 
     /// Currents of the first and the second phase: measured, or the rest of the other two.
-    #[inline]
+    #[inline(always)]
     fn sensed(&self, limits: &Limits, sensors: &Sensors, counts: [Word; 3]) -> [Word; 2] {
         let [first, second, third] = limits.measured(sensors, counts, self.offsets);
         match self.unread(sensors) {
@@ -667,17 +672,17 @@ impl Supervisor {
     }
 
     /// Whether the ADC of a leg that is read is at an end of its range.
-    #[inline]
+    #[inline(always)]
     fn is_at_end(&self, limits: &Limits, sensors: &Sensors, adc: [u16; 3]) -> bool {
-        let [first, second, third] = adc.map(|count| limits.is_at_end(count));
+        let [first, second, third] = adc;
         let unread = self.unread(sensors);
-        (unread != Unread::First && first)
-            || (unread != Unread::Second && second)
-            || (unread != Unread::Third && third)
+        (unread != Unread::First && limits.is_at_end(first))
+            || (unread != Unread::Second && limits.is_at_end(second))
+            || (unread != Unread::Third && limits.is_at_end(third))
     }
 
     /// Counts samples whose three currents do not add up to nothing; true for as many as trip.
-    #[inline]
+    #[inline(always)]
     fn watch_sum(&mut self, limits: &Limits, sensors: &Sensors, adc: [u16; 3]) -> bool {
         let Some(third) = sensors.third else {
             return false;
@@ -697,7 +702,7 @@ impl Supervisor {
         self.is_sum_off(sensors)
     }
 
-    #[inline]
+    #[inline(always)]
     const fn is_sum_off(&self, sensors: &Sensors) -> bool {
         match sensors.third {
             Some(third) => third.sum_samples != 0 && self.sum_count == third.sum_samples,
@@ -788,6 +793,7 @@ impl Supervisor {
         (checked, rest)
     }
 
+    #[inline]
     fn go_without(
         &mut self,
         limits: &Limits,

@@ -140,7 +140,7 @@ fn word_choice() -> &'static str {
 }
 
 /// Bytes of a supervisor, of a sample, of the number of a trip, and of a status.
-const SUPERVISOR: usize = 48;
+const SUPERVISOR: usize = 60;
 const SAMPLE: usize = 16;
 const TRIP_NUMBER: usize = 4;
 const STATUS: usize = 6;
