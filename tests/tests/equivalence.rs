@@ -40,7 +40,6 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pdcc modulation=pair reference=proportional",
     "pdcc modulation=pair emf=held",
     "pdcc modulation=pair legs=sensed",
-    "pdcc modulation=pair legs=bootstrap",
     "pdcc reference=proportional advance=1.5",
     "pdcc reference=proportional advance=2",
     "phcc candidates=three_phase off_leg=nominal",
@@ -73,7 +72,6 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pi-pwm six_step=on emf=observer",
     "pi-pwm six_step=on emf=watched",
     "pi-pwm six_step=on legs=sensed",
-    "pi-pwm six_step=on legs=bootstrap",
     "pi-pwm reference=proportional advance=1.5",
     "pi-pwm reference=proportional advance=2",
 ];
@@ -197,14 +195,12 @@ fn every_pair_of_option_values_is_compiled() {
     );
     let (refused, codes): (Vec<&str>, Vec<&str>) = rest.into_iter().unzip();
     assert_eq!(refused, WITHOUT_EFFECT);
-    // Two legs cannot drive three currents, an off leg cannot be read, and a pair holds legs high; all other
-    // rejections are for lack of effect.
+    // Two legs cannot drive three currents, and an off leg cannot be read; all other rejections are for lack of
+    // effect.
     let three_currents = "pdcc modulation=pair reference=proportional";
     for (what, codes) in refused.iter().zip(codes) {
         let expected = if *what == three_currents {
             "HX0111"
-        } else if what.ends_with("legs=bootstrap") {
-            "HX0410"
         } else if what.ends_with("legs=sensed") && !what.contains("off_leg=nominal") {
             "HX0409"
         } else {
