@@ -110,36 +110,30 @@ static void start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     forget_turn(supervisor);
 }
 
-/** Number of current sensors. */
-static uint16_t sensors(const hexagen_limits *limits)
-{
-    return limits->third.is_there ? 3U : 2U;
-}
-
 static void forget_sums(hexagen_supervisor *supervisor)
 {
-    uint16_t sensor;
-    for (sensor = 0; sensor < 3U; sensor++) {
-        supervisor->sum[sensor] = 0;
-    }
+    supervisor->sum[0] = 0;
+    supervisor->sum[1] = 0;
+    supervisor->sum[2] = 0;
+}
+
+/** The nominal offset of a sensor, words of current. */
+static int32_t nominal_offset(const hexagen_limits *limits, uint16_t sensor)
+{
+    return hexagen_wrap((uint32_t)limits->sensors[sensor].offset << limits->current_bits);
 }
 
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    uint16_t sensor;
     supervisor->fault = HEXAGEN_FAULT_NONE;
     supervisor->hall_prev = 0;
     supervisor->hall_gap = 0;
     supervisor->hall_glitches = 0;
     supervisor->stall_count = 0;
     forget_sums(supervisor);
-    for (sensor = 0; sensor < sensors(limits); sensor++) {
-        supervisor->offset[sensor] =
-            hexagen_wrap((uint32_t)limits->sensors[sensor].offset << limits->current_bits);
-    }
-    for (; sensor < 3U; sensor++) {
-        supervisor->offset[sensor] = 0;
-    }
+    supervisor->offset[0] = nominal_offset(limits, 0);
+    supervisor->offset[1] = nominal_offset(limits, 1);
+    supervisor->offset[2] = limits->third.is_there ? nominal_offset(limits, 2) : 0;
     supervisor->sum_count = 0;
     supervisor->unread = 0;
     start(supervisor, limits);
@@ -171,16 +165,15 @@ static int32_t mean(const hexagen_limits *limits, int32_t sum)
 
 static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    uint16_t sensor;
-    for (sensor = 0; sensor < sensors(limits); sensor++) {
-        if (is_bad_offset(limits, sensor, supervisor->sum[sensor])) {
-            hexagen_trip(supervisor, HEXAGEN_FAULT_OFFSET);
-            return;
-        }
+    const bool has_third = limits->third.is_there;
+    if (is_bad_offset(limits, 0, supervisor->sum[0]) || is_bad_offset(limits, 1, supervisor->sum[1])
+        || (has_third && is_bad_offset(limits, 2, supervisor->sum[2]))) {
+        hexagen_trip(supervisor, HEXAGEN_FAULT_OFFSET);
+        return;
     }
-    for (sensor = 0; sensor < sensors(limits); sensor++) {
-        supervisor->offset[sensor] = mean(limits, supervisor->sum[sensor]);
-    }
+    supervisor->offset[0] = mean(limits, supervisor->sum[0]);
+    supervisor->offset[1] = mean(limits, supervisor->sum[1]);
+    supervisor->offset[2] = has_third ? mean(limits, supervisor->sum[2]) : 0;
     supervisor->countdown = limits->precharge_periods;
     supervisor->mode = HEXAGEN_MODE_PRECHARGE;
     if (limits->precharge_periods == 0U) {
@@ -206,12 +199,12 @@ static void start_up(
 {
     /* The countdown ends the sums before this limit, whatever the initial state. */
     const int32_t most = hexagen_shift_left((int32_t)limits->adc_max, limits->calibration_log2);
-    uint16_t sensor;
     switch (supervisor->mode) {
     case HEXAGEN_MODE_CALIBRATE:
-        for (sensor = 0; sensor < sensors(limits); sensor++) {
-            supervisor->sum[sensor] =
-                hexagen_min(supervisor->sum[sensor] + (int32_t)counts[sensor], most);
+        supervisor->sum[0] = hexagen_min(supervisor->sum[0] + (int32_t)counts[0], most);
+        supervisor->sum[1] = hexagen_min(supervisor->sum[1] + (int32_t)counts[1], most);
+        if (limits->third.is_there) {
+            supervisor->sum[2] = hexagen_min(supervisor->sum[2] + (int32_t)counts[2], most);
         }
         if (is_last(supervisor)) {
             end_calibration(supervisor, limits);
@@ -361,7 +354,7 @@ static hexagen_rested go_without(hexagen_supervisor *supervisor, const hexagen_l
                                         : 0U;
     hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
     hexagen_fault fault;
-    hexagen_sense(supervisor, limits, counts, &first, &second);
+    hexagen_sense(supervisor, limits, counts[0], counts[1], counts[2], &first, &second);
     hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
     checked->i_a = current_within(limits, checked->i_a);
     checked->i_b = current_within(limits, checked->i_b);
@@ -443,14 +436,13 @@ bool hexagen_resume(hexagen_supervisor *supervisor)
 bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
     const hexagen_supervisor before = *supervisor;
-    uint16_t sensor;
     if (!is_ready(supervisor) && supervisor->mode != HEXAGEN_MODE_TRIPPED) {
         return false;
     }
     hexagen_start(supervisor, limits);
-    for (sensor = 0; sensor < 3U; sensor++) {
-        supervisor->offset[sensor] = before.offset[sensor];
-    }
+    supervisor->offset[0] = before.offset[0];
+    supervisor->offset[1] = before.offset[1];
+    supervisor->offset[2] = before.offset[2];
     supervisor->unread = before.unread;
     return true;
 }

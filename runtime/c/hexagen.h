@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /** Version of this interface. Drives refuse to compile with a header of another version. */
-#define HEXAGEN_ABI 4
+#define HEXAGEN_ABI 5
 
 /** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -704,12 +704,12 @@ static inline uint16_t hexagen_unread(
 
 /** Currents of the first and the second phase: measured, or the rest of the other two. */
 static inline void hexagen_sense(const hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    const uint16_t *counts, int32_t *first, int32_t *second)
+    uint16_t count_a, uint16_t count_b, uint16_t count_c, int32_t *first, int32_t *second)
 {
     const uint16_t unread = hexagen_unread(supervisor, limits);
-    const int32_t a = hexagen_current(limits, 0, counts[0], supervisor->offset[0]);
-    const int32_t b = hexagen_current(limits, 1, counts[1], supervisor->offset[1]);
-    const int32_t c = hexagen_current(limits, 2, counts[2], supervisor->offset[2]);
+    const int32_t a = hexagen_current(limits, 0, count_a, supervisor->offset[0]);
+    const int32_t b = hexagen_current(limits, 1, count_b, supervisor->offset[1]);
+    const int32_t c = hexagen_current(limits, 2, count_c, supervisor->offset[2]);
     *first = (unread == 0U) ? hexagen_third(b, c) : a;
     *second = (unread == 1U) ? hexagen_third(a, c) : b;
 }
@@ -862,11 +862,10 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
     const bool is_edge = hexagen_watch_hall(supervisor, limits, hall, is_sound);
     const bool is_stalled = hexagen_watch_stall(supervisor, limits, is_edge, set_point);
     const bool is_sum_off = hexagen_watch_sum(supervisor, limits, sample);
-    const uint16_t counts[3] = { hexagen_count(limits, sample, 0),
-        hexagen_count(limits, sample, 1), hexagen_count(limits, sample, 2) };
     int32_t first;
     int32_t second;
-    hexagen_sense(supervisor, limits, counts, &first, &second);
+    hexagen_sense(supervisor, limits, hexagen_count(limits, sample, 0),
+        hexagen_count(limits, sample, 1), hexagen_count(limits, sample, 2), &first, &second);
     hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
     checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;

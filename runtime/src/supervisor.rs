@@ -201,9 +201,7 @@ impl Limits {
     #[inline]
     fn is_over(&self, [first, second]: [Word; 2]) -> bool {
         let third = third_of([first, second]);
-        let range = self.trip.wrapping_neg()..=self.trip;
-        let is_within = |i: Word| range.contains(&i.0);
-        !(is_within(first) && is_within(second) && is_within(third))
+        first.exceeds(self.trip) || second.exceeds(self.trip) || third.exceeds(self.trip)
     }
 }
 
@@ -638,7 +636,9 @@ impl Supervisor {
         let stalled = self.watch_stall(limits, is_edge, is_demanded);
         let is_off = self.watch_sum(limits, sensors, adc);
         let is_fit = self.mode == Mode::Run
-            && !self.is_at_end(limits, sensors, adc)
+            && !self.is_at_end(limits, sensors, Unread::First, first)
+            && !self.is_at_end(limits, sensors, Unread::Second, second)
+            && !self.is_at_end(limits, sensors, Unread::Third, third)
             && is_sound
             && !limits.is_over(i)
             && !is_off
@@ -671,14 +671,10 @@ impl Supervisor {
         }
     }
 
-    /// Whether the ADC of a leg that is read is at an end of its range.
+    /// Whether the ADC of a leg is at an end of its range, if it is read.
     #[inline(always)]
-    fn is_at_end(&self, limits: &Limits, sensors: &Sensors, adc: [u16; 3]) -> bool {
-        let [first, second, third] = adc;
-        let unread = self.unread(sensors);
-        (unread != Unread::First && limits.is_at_end(first))
-            || (unread != Unread::Second && limits.is_at_end(second))
-            || (unread != Unread::Third && limits.is_at_end(third))
+    fn is_at_end(&self, limits: &Limits, sensors: &Sensors, leg: Unread, count: u16) -> bool {
+        self.unread(sensors) != leg && limits.is_at_end(count)
     }
 
     /// Counts samples whose three currents do not add up to nothing; true for as many as trip.
@@ -820,7 +816,11 @@ impl Supervisor {
             hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         };
-        let found = if self.is_at_end(limits, sensors, adc) {
+        let [first, second, third] = adc;
+        let found = if self.is_at_end(limits, sensors, Unread::First, first)
+            || self.is_at_end(limits, sensors, Unread::Second, second)
+            || self.is_at_end(limits, sensors, Unread::Third, third)
+        {
             Some(Fault::AdcRange)
         } else if !is_sound && !is_bridged {
             Some(Fault::Hall)

@@ -104,7 +104,7 @@ int main(void)
     /* The period of the trip is kept whatever comes behind it: the law's words are those before it. */
     EXPECT(steps(4, HEXAGEN_MODE_TRIPPED, HEXAGEN_LEG_OFF, 2048, 2028) == 4);
     EXPECT(hub_trip(&drive, &record) && record.sample.hall == 0 && record.sample.adc[0] == 2058);
-    EXPECT(record.supervisor.fault == HEXAGEN_FAULT_HALL && record.supervisor.offset_b == 2028 * unit);
+    EXPECT(record.supervisor.fault == HEXAGEN_FAULT_HALL && record.supervisor.offset[1] == 2028 * unit);
     EXPECT(record.current == 0 && record.state.i_a_prev == -8 * unit);
     hub_set_current_ma(&drive, 5000);
     EXPECT(drive.current > 0);

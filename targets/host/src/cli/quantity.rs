@@ -170,7 +170,7 @@ mod tests {
         assert_eq!(adc_offset("200mA"), Ok([0.2; 3]));
         assert_eq!(adc_offset("0.2A,-1"), Ok([0.2, -1.0, 0.0]));
         assert_eq!(adc_scale("1.1,0.9,1.2"), Ok([1.1, 0.9, 1.2]));
-        assert_eq!(adc_scale("1.01,0.99"), Ok([1.01, 0.99]));
+        assert_eq!(adc_scale("1.01,0.99"), Ok([1.01, 0.99, 1.0]));
         assert_eq!(counts("1.5 counts"), Ok(1.5));
     }
 
