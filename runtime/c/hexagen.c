@@ -1,7 +1,7 @@
 /* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
-#if HEXAGEN_ABI != 4
+#if HEXAGEN_ABI != 5
 #error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
 #endif
 

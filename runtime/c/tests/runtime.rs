@@ -147,8 +147,8 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         (
             "line",
-            "count_second) && is_sound",
-            "count_second) && (is_sound || true)",
+            "\n        && is_sound && !hexagen_is_over",
+            "\n        && (is_sound || true) && !hexagen_is_over",
         ),
         (
             "line",
@@ -188,8 +188,8 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         (
             "line",
-            "supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_is",
-            "!hexagen_is",
+            "supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_has_end",
+            "!hexagen_has_end",
         ),
         (
             "checked.i_a ==",
@@ -213,13 +213,13 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         (
             "checked.i_a ==",
-            "hexagen_third(first, second), limits->current_least, limits->current_most)",
-            "hexagen_third(first, second), INT32_MIN, INT32_MAX)",
+            "hexagen_clamp(current, limits->current_least, limits->current_most)",
+            "hexagen_clamp(current, INT32_MIN, INT32_MAX - 0 * limits->trip)",
         ),
         (
-            "checked.i_b ==",
-            "count_b = (read_b < most) ? read_b : most",
-            "count_b = read_b",
+            "checked.i_",
+            "(read < limits->adc_max) ? read : limits->adc_max;\n}\n\nstatic int32_t",
+            "read;\n}\n\nstatic int32_t",
         ),
         (
             "supervisor.fault ==",
