@@ -230,9 +230,10 @@ impl Stimulus {
     /// A motor without current, its ADCs at their true offsets.
     fn at_rest(&mut self) -> Sample {
         let mut counts = [0; 3];
-        for sensor in 0..self.sensed.phases().len() {
+        let sensors = self.sensed.phases().len();
+        for (count, offset) in counts.iter_mut().zip(self.true_offset).take(sensors) {
             let noise = self.random.i32(-1..=1);
-            counts[sensor] = self.adc(self.true_offset[sensor] + noise);
+            *count = self.adc(offset + noise);
         }
         self.sensed
             .sample(counts, self.codes[self.sector])

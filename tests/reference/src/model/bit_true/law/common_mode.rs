@@ -100,8 +100,8 @@ impl<W: Word> CommonModeRule<W> {
     /// Legs about the middle of the bus; where the highest need not be read, the second highest no higher than its
     /// sensor can be.
     #[inline]
-    pub fn readable(&self, k: &Constants<W>, v_bus: W, limited: Limited<W>) -> Limited<W> {
-        let Limited { u, legs, reach } = limited;
+    pub fn readable(&self, k: &Constants<W>, v_bus: W, limited: &Limited<W>) -> Limited<W> {
+        let &Limited { u, legs, reach } = limited;
         let [a, b, c] = legs;
         let middle = halve(greater(greater(a, b), c) + lesser(lesser(a, b), c));
         let half = halve(self.reach(v_bus) + 1.0);

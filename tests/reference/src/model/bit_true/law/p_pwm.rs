@@ -36,7 +36,7 @@ impl<W: Word> PPwm<W> {
             u_unsat,
             now.e,
         );
-        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, limited);
+        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, &limited);
         Decision {
             u_unsat,
             u,

@@ -42,7 +42,7 @@ impl<W: Word> Pdcc<W> {
             u_unsat,
             e,
         );
-        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, limited);
+        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, &limited);
         let shifts = self.dead_time.shifts(now, self.form.kept(now));
         let command = if self.pair && !now.commutating {
             pulses::pair(now, u_unsat, shifts, &self.of_pair)

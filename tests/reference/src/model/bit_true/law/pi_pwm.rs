@@ -64,7 +64,7 @@ impl<W: Word> PiPwm<W> {
             u_unsat,
             now.e,
         );
-        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, limited);
+        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, &limited);
         // 12
         let [low, high] = self.integral_range;
         let integral = both(|x| {
