@@ -148,6 +148,13 @@ impl Limits {
         ]
     }
 
+    /// Counts, none above the ADC's range.
+    #[inline]
+    fn within_range(&self, [first, second, third]: [u16; 3]) -> [Word; 3] {
+        let within = |count: u16| Word::from(count).min(self.adc_max);
+        [within(first), within(second), within(third)]
+    }
+
     /// Currents of the sensors' phases in words of current; `offsets` are words of current, too.
     #[inline(always)]
     fn measured(&self, sensors: &Sensors, counts: [Word; 3], offsets: [Word; 3]) -> [Word; 3] {
@@ -686,7 +693,7 @@ impl Supervisor {
         if self.mode != Mode::Run || third.sum_samples == 0 {
             self.sum_count = 0;
         } else if self.unread(sensors) == Unread::None {
-            let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
+            let counts = limits.within_range(adc);
             let [first, second, third_current] = limits.measured(sensors, counts, self.offsets);
             let sum = first + second + third_current;
             self.sum_count = if sum.exceeds(third.sum_tolerance) {
@@ -797,10 +804,11 @@ impl Supervisor {
         sample: &Sample,
     ) -> (Checked, Rest) {
         let adc = sensors.phases.of(sample.adc);
-        let counts = adc.map(|count| Word::from(count).min(limits.adc_max));
+        let counts = limits.within_range(adc);
         let i = self.sensed(limits, sensors, counts);
         let [least, most] = limits.currents;
         let within = |i: Word| i.min(most).max(least);
+        let [i_a, i_b] = sensors.phases.a_and_b(i, third_of(i));
         let sampled = limits.hall_of(sample);
         let is_sound = self.is_sound(limits, sampled);
         let is_bridged = !is_sound && self.bridge(limits);
@@ -812,7 +820,7 @@ impl Supervisor {
             0
         };
         let checked = Checked {
-            i: sensors.phases.a_and_b(i, third_of(i)).map(within),
+            i: [within(i_a), within(i_b)],
             hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
         };
@@ -934,13 +942,14 @@ impl Supervisor {
         }
         // The mean in words of current, rounded down.
         let (bits, log2) = (limits.current_bits, limits.calibration_log2);
-        self.offsets = self.sums.map(|sum| {
+        let mean = |sum: Word| {
             if bits >= log2 {
                 sum << (bits - log2)
             } else {
                 sum >> (log2 - bits)
             }
-        });
+        };
+        self.offsets = [mean(sum_a), mean(sum_b), mean(sum_c)];
         self.countdown = limits.precharge_periods;
         self.mode = Mode::Precharge;
         if limits.precharge_periods == 0 {

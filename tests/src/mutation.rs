@@ -201,7 +201,7 @@ pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
 ///
 /// If the text is not the supervisor's.
 pub fn mutants_of_supervisor(text: &str) -> Vec<Mutant> {
-    let behind = text.find("    /// Currents of the sensors' phases in words of current");
+    let behind = text.find("    /// Counts, none above the ADC's range.");
     let mut start = behind.expect("what stands behind `Limits::hold`");
     let end = text.find("    /// Mode and fault of the drive.");
     let end = end.expect("what stands before the words");

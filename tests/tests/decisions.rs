@@ -447,7 +447,11 @@ fn subjects() -> Vec<Subject> {
         .filter_map(|variant| Subject::new(&paper.name, &paper.text, variant))
         .collect();
     assert_eq!(subjects.len(), VARIANTS.len());
-    for motor in motors() {
+    // Of the motors whose vectors reach the whole bus; `low_legs` compares the others with the model.
+    for motor in motors()
+        .into_iter()
+        .filter(|motor| motor.name != "hoverboard-hub")
+    {
         for variant in ["fcs-mpc", "fcs-mpc:word=16", "phcc", "phcc:word=16"] {
             subjects.extend(Subject::new(&motor.name, &motor.text, variant));
         }
