@@ -327,13 +327,6 @@ static hexagen_rested go_on_braking(
     return rested;
 }
 
-static uint16_t count_within(
-    const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
-{
-    const uint16_t read = hexagen_count(limits, sample, sensor);
-    return (read < limits->adc_max) ? read : limits->adc_max;
-}
-
 static int32_t current_within(const hexagen_limits *limits, int32_t current)
 {
     return hexagen_clamp(current, limits->current_least, limits->current_most);
@@ -342,8 +335,8 @@ static int32_t current_within(const hexagen_limits *limits, int32_t current)
 static hexagen_rested go_without(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, hexagen_checked *checked)
 {
-    const uint16_t counts[3] = { count_within(limits, sample, 0), count_within(limits, sample, 1),
-        count_within(limits, sample, 2) };
+    const uint16_t counts[3] = { hexagen_count_within(limits, sample, 0),
+        hexagen_count_within(limits, sample, 1), hexagen_count_within(limits, sample, 2) };
     int32_t first;
     int32_t second;
     const uint16_t sampled = hexagen_hall_of(limits, sample);

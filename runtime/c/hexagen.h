@@ -640,6 +640,14 @@ static inline uint16_t hexagen_count(
     return sample->adc[(first + sensor) % 3U];
 }
 
+/** The same, clamped to the ADC's range. */
+static inline uint16_t hexagen_count_within(
+    const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
+{
+    const uint16_t read = hexagen_count(limits, sample, sensor);
+    return (read < limits->adc_max) ? read : limits->adc_max;
+}
+
 /** A sensor's phase current in words of current; `offset` is a word of current, too. */
 static inline int32_t hexagen_current(
     const hexagen_limits *limits, uint16_t sensor, uint16_t count, int32_t offset)
@@ -735,8 +743,7 @@ static inline bool hexagen_is_sum_off(
 static inline int32_t hexagen_measured(const hexagen_supervisor *supervisor,
     const hexagen_limits *limits, const hexagen_sample *sample, uint16_t sensor)
 {
-    const uint16_t read = hexagen_count(limits, sample, sensor);
-    const uint16_t count = (read < limits->adc_max) ? read : limits->adc_max;
+    const uint16_t count = hexagen_count_within(limits, sample, sensor);
     return hexagen_current(limits, sensor, count, supervisor->offset[sensor]);
 }
 
@@ -774,8 +781,8 @@ static inline bool hexagen_is_read(
 }
 
 /**
- * Follows the legs of a period, of which some may be read at its end and others not. Periods that
- * rest are followed there.
+ * Remembers which leg the command of a controlled period leaves unread at its end, with three sensors
+ * in the low legs. hexagen_rest does this for the periods that it handles.
  */
 static inline void hexagen_follow_legs(
     hexagen_supervisor *supervisor, const hexagen_limits *limits, const hexagen_legs *legs)

@@ -713,8 +713,9 @@ impl Supervisor {
         }
     }
 
-    /// Follows the command of a period: timer counts for which the upper switches of legs a, b, c are
-    /// on, none of a leg that is off. Periods that [`rest`](Self::rest) are followed there.
+    /// Remembers which leg the command of a controlled period leaves unread at its end, with three
+    /// sensors in the low legs. `on` has the timer counts for which each leg's upper switch is on, or
+    /// none for a leg that is off. [`rest`](Self::rest) does this for the periods that it handles.
     #[inline]
     pub fn follow_command(&mut self, sensors: &Sensors, on: [Option<u16>; 3]) {
         let Some(ThirdSensor {

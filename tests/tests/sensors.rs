@@ -32,6 +32,7 @@ drives! {
     OfCAndA { sensed_phases: ca, adc_inverted: on }
     Unlike { adc_inverted: [off, on], adc_offset: [2048, 1990] }
     UnlikeOfCAndA { sensed_phases: ca, adc_inverted: [on, off], adc_offset: [2100, 2011] }
+    UnlikeGains { adc_gain: [20 mA/count, 31 mA/count] }
     Three { sensed_phases: abc, adc_offset: [2100, 2011, 2048] }
     ThreeInLowLegs {
         sensed_phases: abc,
@@ -48,35 +49,10 @@ verify!(
     OfCAndA,
     Unlike,
     UnlikeOfCAndA,
+    UnlikeGains,
     Three,
     ThreeInLowLegs
 );
-
-hexagen::controller! {
-    /// Sensors of two gains.
-    pub UnlikeGains {
-        motor: {
-            pole_pairs: 4,
-            resistance: 135 mohm per_phase,
-            inductance: 0.22 mH per_phase,
-            winding: star,
-            back_emf: 0.1648 V/(rad/s) line_to_line peak,
-            emf_shape: trapezoidal,
-            rated_current: 20 A,
-            rated_speed: 1600 rpm,
-        },
-        inverter: {
-            bus_voltage: 48 V,
-            f_pwm: 20 kHz,
-            timer_clock: 72 MHz,
-            adc_bits: 12,
-            adc_gain: [20 mA/count, 31 mA/count],
-        },
-        controller: pdcc,
-    }
-}
-
-verify!(UnlikeGains);
 
 /// Three sensors whose currents do not add up trip after the stated samples in a row, no sooner.
 #[test]

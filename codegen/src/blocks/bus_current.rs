@@ -9,8 +9,9 @@ use crate::interface::Rounding;
 use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Phases, Real, named};
 use crate::spec::BusCurrents;
 
-/// Control periods in which a bus current that is too high by 1 A takes back 1 A of the set-point. At the
-/// full bus voltage a motor draws about what its phases carry: twice the time of the mean damps the loop.
+/// Control periods in which a bus current that is too high by 1 A takes back 1 A of the set-point. With full
+/// duty the bus current is that of the phases, and the loop's gain is largest; twice the time constant of the
+/// mean damps it then, too.
 const PERIODS: u32 = 32;
 
 /// Base-2 logarithm of the periods of the mean, which takes the switching between vectors out.

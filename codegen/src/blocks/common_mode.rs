@@ -15,6 +15,8 @@ pub struct CommonModeRule {
     period: u32,
     /// Largest compare value.
     pub top: u32,
+    /// Largest difference of two compare values.
+    reach: u32,
     /// Largest compare value of the second highest leg, which is less where the highest is not read.
     second: u32,
 }
@@ -32,6 +34,7 @@ impl CommonModeRule {
                 CommonMode::Centred => readable,
                 CommonMode::Readable | CommonMode::ClampedLow => inverter.highest_top(),
             },
+            reach: inverter.reach(policy),
             second: readable,
         }
     }
@@ -41,6 +44,7 @@ impl CommonModeRule {
         let top = l.spec.inverter.readable_top();
         Self {
             top,
+            reach: top,
             ..Self::new(l, CommonMode::ClampedLow)
         }
     }
@@ -72,26 +76,22 @@ impl CommonModeRule {
 
     /// The largest spread of three phase voltages that fits the legs, as a bus: centred legs leave as much below as above.
     pub fn reach<'b>(self, l: &Lowering<'b>, bus: Bus<'b>) -> Bus<'b> {
-        if self.top == self.period {
-            return bus;
-        }
-        let counts = match self.policy {
-            CommonMode::Centred => 2 * self.top - self.period,
-            CommonMode::Readable | CommonMode::ClampedLow => self.top,
-        };
         let whose = "legs reach which must be low for a while";
-        let volts = self.share(l, bus, counts, ["k_reach", "v_reach", whose]);
-        Bus { volts, ..bus }
+        self.reach_as(l, bus, ["k_reach", "v_reach", whose])
     }
 
     /// The largest line voltage of a pair, as a bus: one leg is pulsed, its partner low throughout.
     pub fn reach_of_pair<'b>(l: &Lowering<'b>, bus: Bus<'b>) -> Bus<'b> {
-        let rule = Self::of_vectors(l);
-        if rule.top == rule.period {
+        let whose = "the pulsed leg of a pair reaches which must be low for a while";
+        Self::of_vectors(l).reach_as(l, bus, ["k_line", "v_line", whose])
+    }
+
+    /// The reach under these names; the bus itself where it is that.
+    fn reach_as<'b>(self, l: &Lowering<'b>, bus: Bus<'b>, names: [&'static str; 3]) -> Bus<'b> {
+        if self.reach == self.period {
             return bus;
         }
-        let whose = "the pulsed leg of a pair reaches which must be low for a while";
-        let volts = rule.share(l, bus, rule.top, ["k_line", "v_line", whose]);
+        let volts = self.share(l, bus, self.reach, names);
         Bus { volts, ..bus }
     }
 

@@ -153,7 +153,7 @@ impl InverterSpec {
     }
 
     /// Largest difference of the compare values of three pulsed legs: centred ones leave as much below as above.
-    fn reach(&self, common_mode: CommonMode) -> u32 {
+    pub fn reach(&self, common_mode: CommonMode) -> u32 {
         match common_mode {
             CommonMode::Centred => 2 * self.readable_top() - self.timer_period,
             CommonMode::Readable | CommonMode::ClampedLow => self.highest_top(),

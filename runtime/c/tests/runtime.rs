@@ -218,8 +218,8 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         (
             "checked.i_",
-            "(read < limits->adc_max) ? read : limits->adc_max;\n}\n\nstatic int32_t",
-            "read;\n}\n\nstatic int32_t",
+            "(read < limits->adc_max) ? read : limits->adc_max;",
+            "read;",
         ),
         (
             "supervisor.fault ==",

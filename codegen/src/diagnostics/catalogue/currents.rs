@@ -312,8 +312,8 @@ pub fn leg_turned_off_early(
     with_parts(error, &[given])
 }
 
-/// The residual watch allows for `allowed` volts at standstill with the largest set-point, as written or
-/// by default; `bus`, volt.
+/// The residual watch tolerates more than faults cause: the deviation that it tolerates at standstill with the
+/// largest set-point `max`, and the bus voltage, both in volt. `given` and `max` are as written, or the default.
 pub fn watch_is_blind(
     at: &Location,
     given: &str,

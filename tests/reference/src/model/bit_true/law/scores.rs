@@ -122,7 +122,7 @@ impl<'a, W: Word> Choice<'a, W> {
         }
     }
 
-    /// The part of the score that is a multiple of V, over V.
+    /// The part of the score that is proportional to V, divided by V.
     pub fn by_reach(&self, vector: usize) -> W {
         score_by_reach(self.v, &self.u, vector)
     }
