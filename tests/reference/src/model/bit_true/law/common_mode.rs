@@ -49,12 +49,6 @@ impl<W: Word> CommonModeRule<W> {
         Self::with_top(spec, CommonMode::ClampedLow, top, scale, name)
     }
 
-    /// That of three pulsed legs in variants without them.
-    pub fn unused(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
-        let top = spec.inverter.largest_compare()?;
-        Self::with_top(spec, CommonMode::Centred, top, scale, None)
-    }
-
     /// `k_reach`: name of the coefficient for V_REACH on a measured bus, if it is used.
     fn with_top(
         spec: &Spec,

@@ -19,8 +19,8 @@ pub struct PiPwm<W> {
     k_i: Coefficient<W>,
     integral_range: [f64; 2],
     dead_time: DeadTime<W>,
-    common_mode: CommonModeRule<W>,
-    of_pair: CommonModeRule<W>,
+    /// Of three pulsed legs, or of the pair.
+    legs: CommonModeRule<W>,
 }
 
 impl<W: Word> PiPwm<W> {
@@ -38,11 +38,10 @@ impl<W: Word> PiPwm<W> {
             k_drop: scale.coefficient("k_drop", -scale.ohm * reference_gain(spec))?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
             dead_time: DeadTime::new(spec, scale)?,
-            common_mode: match options.six_step {
-                Switch::On => CommonModeRule::unused(spec, scale)?,
+            legs: match options.six_step {
+                Switch::On => CommonModeRule::of_pair(spec, true, scale)?,
                 Switch::Off => CommonModeRule::new(spec, options.common_mode, scale)?,
             },
-            of_pair: CommonModeRule::of_pair(spec, options.six_step == Switch::On, scale)?,
             integral_range,
         })
     }
@@ -60,11 +59,11 @@ impl<W: Word> PiPwm<W> {
         let limited = limit::limit(
             self.saturation,
             now.k,
-            self.common_mode.reach(now.v_bus),
+            self.legs.reach(now.v_bus),
             u_unsat,
             now.e,
         );
-        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, &limited);
+        let Limited { u, legs, reach } = self.legs.readable(now.k, now.v_bus, &limited);
         // 12
         let [low, high] = self.integral_range;
         let integral = both(|x| {
@@ -81,7 +80,7 @@ impl<W: Word> PiPwm<W> {
                 now,
                 legs,
                 self.dead_time.shifts(now, drop.map(|drop| -drop)),
-                &self.common_mode,
+                &self.legs,
                 false,
             ),
             integral,
@@ -100,7 +99,7 @@ impl<W: Word> PiPwm<W> {
         let part = now.set_point + self.k_drop.mul(pair_current);
         let u = part + now.integral[0];
         // 10
-        let line_reach = self.of_pair.reach(now.v_bus);
+        let line_reach = self.legs.reach(now.v_bus);
         let line = within(u * 2.0, -line_reach, line_reach);
         // 12
         let limited = halve(line);
@@ -123,7 +122,7 @@ impl<W: Word> PiPwm<W> {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, self.dead_time.shifts(now, flow), &self.of_pair),
+            command: pulses::line(now, line, self.dead_time.shifts(now, flow), &self.legs),
             integral: [integral, word(0.0)],
             hysteresis: now.hysteresis,
             past: now.past,

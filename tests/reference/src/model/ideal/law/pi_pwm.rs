@@ -22,9 +22,8 @@ pub struct PiPwm {
     /// Largest integral, volt.
     integral_max: f64,
     dead_time: DeadTime,
-    common_mode: CommonModeRule,
-    /// One leg of a pair is low throughout, as of vectors.
-    of_pair: CommonModeRule,
+    /// Of three pulsed legs, or of the pair, of which one is low throughout as of vectors.
+    legs: CommonModeRule,
 }
 
 impl PiPwm {
@@ -35,8 +34,10 @@ impl PiPwm {
             k_p: reference_gain(spec),
             k_i: spec.inverter.t_s / options.integral_time,
             dead_time: DeadTime::new(spec),
-            common_mode: CommonModeRule::new(spec, options.common_mode)?,
-            of_pair: CommonModeRule::of_vectors(spec)?,
+            legs: match options.six_step {
+                Switch::On => CommonModeRule::of_vectors(spec)?,
+                Switch::Off => CommonModeRule::new(spec, options.common_mode)?,
+            },
             integral_max: spec.inverter.v_bus_max()?,
         })
     }
@@ -51,9 +52,9 @@ impl PiPwm {
             self.saturation,
             &phases(&u_unsat),
             &phases(&now.e),
-            self.common_mode.reach(now.v_bus),
+            self.legs.reach(now.v_bus),
         );
-        let legs = self.common_mode.readable(&limited.u, now.v_bus);
+        let legs = self.legs.readable(&limited.u, now.v_bus);
         let u = clarke(&legs);
         let integral = now.integral + (p + u - u_unsat) * self.k_i;
         Decision {
@@ -61,12 +62,7 @@ impl PiPwm {
             u,
             reach: limited.reach,
             vector: 0,
-            command: pulses::three(
-                now,
-                &legs,
-                &self.dead_time.shifts(now, 1.0),
-                self.common_mode,
-            ),
+            command: pulses::three(now, &legs, &self.dead_time.shifts(now, 1.0), self.legs),
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
             rises: now.rises,
             past: now.past,
@@ -81,7 +77,7 @@ impl PiPwm {
         let [held, _] = to_ab(&now.integral);
         let part = (now.set_point - pair_current) * self.k_p;
         let u = part + held;
-        let reach = self.of_pair.reach(now.v_bus);
+        let reach = self.legs.reach(now.v_bus);
         let line = (2.0 * u).clamp(-reach, reach);
         let integral = (held + (part + line / 2.0 - u) * self.k_i)
             .clamp(-self.integral_max, self.integral_max);
@@ -101,7 +97,7 @@ impl PiPwm {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0), self.of_pair),
+            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0), self.legs),
             integral: [integral, 0.0],
             rises: now.rises,
             past: now.past,
