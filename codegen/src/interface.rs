@@ -95,6 +95,8 @@ pub struct Interface {
     pub header: Vec<String>,
     /// The normalised specification.
     pub spec_toml: String,
+    /// Greatest torque over speed, mechanical rad/s and Nm.
+    pub envelope: Vec<[f64; 2]>,
     /// The controller's options, defaults included.
     pub options: Vec<OptionEntry>,
     /// Every format.

@@ -1,6 +1,7 @@
 //! The pipeline: from a checked specification to a verified graph and its interface.
 
 use crate::at_once::at_once;
+use crate::design::Envelope;
 use crate::diagnostics::{
     Code, Collector, Diagnostic, Diagnostics, catalogue, engineering, percent,
 };
@@ -112,9 +113,35 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
             trust.filtered,
         ));
     }
+    warnings.extend(warn_of_bus(spec, origins));
     warnings.extend(warn_of_watch(spec, origins));
     warnings.extend(warn_of_trip(spec, origins));
     warnings
+}
+
+/// Warns of a rating beyond the drive's envelope.
+fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
+    const SPEED: &str = "motor.rated_speed";
+    // A limit of the bus current is meant to cut the torque.
+    let envelope = Envelope {
+        bus_current: None,
+        ..Envelope::of(spec)
+    };
+    let rated = spec.motor.rated_speed;
+    let set_point =
+        (spec.motor.torque_rating() / envelope.torque_constant()).min(envelope.max_current);
+    let torque = set_point * envelope.torque_constant();
+    let taken = envelope.bus_voltage(rated, set_point);
+    let bus = spec.inverter.v_bus;
+    (taken > bus * (1.0 + 1e-9)).then(|| {
+        let beyond = catalogue::Beyond {
+            torques: [torque, envelope.torque(rated)],
+            speed: envelope.speed(torque),
+            bus: [bus, taken],
+        };
+        let given = origins.given(SPEED, "");
+        catalogue::rating_beyond_bus((origins.at(SPEED), &given), &beyond)
+    })
 }
 
 /// Warns of a residual watch whose allowance at standstill and full current exceeds half the bus, about what a dead

@@ -459,10 +459,10 @@ impl Code {
                 "Write `block_mean` in place of `line_to_line peak`.",
             ),
             Self::RatingBeyondBus => say(
-                "The line-to-line EMF at rated speed leaves less of the bus than rated current drops in two phases: rated torque ends below rated speed.",
+                "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",
                 "rated_speed = \"2500 rpm\"",
                 "rated_speed = \"2000 rpm\"",
-                "Nothing is wrong with the drive. The message goes by a current in two phases; `hexagen check` simulates the drive and prints its torque. Raise the bus, or state the speed that is meant under load.",
+                "Nothing is wrong with the drive. A little beyond, torque ripples; farther, it falls: `hexagen check` simulates the drive, and `hexagen limit` finds where its mean torque ends. Raise the bus, or state the speed that is meant under load.",
             ),
             Self::TripFarAbove => say(
                 "A fault makes as much current as the trip level before the drive stops.",

@@ -1,7 +1,7 @@
 //! The data sheet of one controller, in Markdown, from the interface and the verified graph alone:
 //! it cannot differ from the code.
 
-use crate::diagnostics::significant;
+use crate::diagnostics::{engineering, rpm, significant};
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
     Cost, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, cases,
@@ -16,6 +16,7 @@ pub fn emit_datasheet(graph: &VerifiedGraph, interface: &Interface) -> String {
     sheet.lines(&interface.doc);
     sheet.heading(2, "Derived values");
     sheet.lines(&interface.header);
+    envelope(&mut sheet, interface);
     options(&mut sheet, interface);
     constants_of_the_type(&mut sheet, interface);
     formats(&mut sheet, interface);
@@ -70,6 +71,17 @@ impl Sheet {
     fn row<const N: usize>(&mut self, cells: [String; N]) {
         let cells = cells.map(|cell| cell.replace('|', "\\|"));
         self.line(&format!("| {} |", cells.join(" | ")));
+    }
+}
+
+fn envelope(sheet: &mut Sheet, interface: &Interface) {
+    sheet.heading(2, "Envelope");
+    sheet.line(
+        "Greatest motoring torque for which the nominal bus drives the whole shape of the current; beyond it the torque ripples, then falls.\n",
+    );
+    sheet.table(["speed", "torque"]);
+    for [omega_m, torque] in &interface.envelope {
+        sheet.row([rpm(*omega_m), engineering(*torque, "Nm")]);
     }
 }
 

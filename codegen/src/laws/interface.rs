@@ -6,6 +6,7 @@ use super::constants::{constants, ratios};
 use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
 use crate::blocks::Scale;
+use crate::design::Envelope;
 use crate::diagnostics::{engineering, frequency, rpm};
 use crate::interface::{
     Interface, Limits, OptionEntry, PublicConstant, ResidualWatch, SensedPhases, Sensor, Sensors,
@@ -29,6 +30,7 @@ pub fn interface(
         doc: documentation(spec, design, law),
         header: header(design, scaled),
         spec_toml: spec.to_toml(),
+        envelope: envelope(spec),
         options: options(spec),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),
@@ -113,6 +115,16 @@ fn units(spec: &Spec, scale: Scale) -> Units {
         rpm: Unit::of(60.0 * turns),
         sectors: spec.hall_sectors(),
     }
+}
+
+/// Shares of the rated speed at which the data sheet has the greatest torque.
+const SHARES: [f64; 6] = [0.25, 0.5, 0.75, 1.0, 1.25, 1.5];
+
+fn envelope(spec: &Spec) -> Vec<[f64; 2]> {
+    let envelope = Envelope::of(spec);
+    let speeds = SHARES.map(|share| share * spec.motor.rated_speed);
+    let points = speeds.map(|omega_m| [omega_m, envelope.torque(omega_m)]);
+    points.to_vec()
 }
 
 fn options(spec: &Spec) -> Vec<OptionEntry> {

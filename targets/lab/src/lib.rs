@@ -5,6 +5,7 @@
 //! formats and limits into the runtime's types.
 
 pub mod accuracy;
+pub mod any_profile;
 pub mod boards;
 pub mod closed_loop;
 pub mod counted;

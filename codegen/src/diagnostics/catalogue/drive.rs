@@ -2,7 +2,9 @@
 
 use super::internal;
 use super::part::{Part, with_parts};
-use crate::diagnostics::{Code, Diagnostic, at_least, at_most, engineering, percent, rpm_at_most};
+use crate::diagnostics::{
+    Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most,
+};
 
 /// A bus voltage on the far side, `below` or `above`, of a board's limit.
 pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
@@ -99,35 +101,32 @@ pub fn bus_too_low(
     )
 }
 
-/// A rating of which the bus leaves part of the current at rated speed. In volt: EMF line to line at
-/// rated speed; drop of rated current in two phases. What is left at rated speed, ampere and
-/// newton metres; the speed at rated current, mechanical rad/s.
-pub fn rating_beyond_bus(
-    bus: &Part,
-    [speed, current]: [&Part; 2],
-    [emf, drop]: [f64; 2],
-    [left, torque, reached]: [f64; 3],
-) -> Diagnostic {
-    with_parts(
-        Diagnostic::new(
-            Code::RatingBeyondBus,
-            &speed.location,
-            format!(
-                "`{}`: {}: there the bus of {} leaves {} of {} in two phases, {} (the EMF is {} line to line, 2 R I {}); with the rated current it reaches {}; raise the bus to {}, or lower `{}`",
-                speed.field,
-                speed.given,
-                bus.given,
-                engineering(left, "A"),
-                current.quoted(),
-                engineering(torque, "Nm"),
-                engineering(emf, "V"),
-                engineering(drop, "V"),
-                rpm_at_most(reached),
-                engineering(at_least(emf + drop), "V"),
-                speed.field,
-            ),
+/// A rating beyond the envelope of the drive.
+#[derive(Clone, Copy, Debug)]
+pub struct Beyond {
+    /// Torque of the rating, and the greatest within the envelope at rated speed, Nm.
+    pub torques: [f64; 2],
+    /// Greatest speed of that rating's torque, mechanical rad/s; none if it is not held at any.
+    pub speed: Option<f64>,
+    /// Bus voltages: the nominal one, and that which the rating takes, volt.
+    pub bus: [f64; 2],
+}
+
+/// A rating at which the bus cuts the current's shape. `speed`: the rated speed and where it was written.
+pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Diagnostic {
+    let [rated, held] = beyond.torques.map(|torque| engineering(torque, "Nm"));
+    let [bus, taken] = beyond.bus;
+    let lasts = beyond.speed.map_or_else(String::new, |speed| {
+        format!("; the rating lasts to {}", rpm_at_most(speed))
+    });
+    Diagnostic::new(
+        Code::RatingBeyondBus,
+        at,
+        format!(
+            "`rated_speed`: {speed}: there the bus of {} drives the whole current up to {held} of the rating's {rated}, and beyond that the torque ripples and falls{lasts}; raise `bus_voltage` to {}, or lower `rated_speed`",
+            engineering(bus, "V"),
+            engineering(at_least(taken), "V"),
         ),
-        &[bus, current],
     )
 }
 

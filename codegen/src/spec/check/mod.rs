@@ -52,7 +52,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
     if !contradicts {
         // Torque and EMF in one wrong basis are one mistake.
-        relations::check_bus(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
+        relations::check_bus(&motor_reader, &motor, &inverter, &mut errors);
     }
     sensing_window::check(
         &inverter_reader,

@@ -491,17 +491,15 @@ fn slips_are_told_at_the_most_likely_place() {
 fn a_rating_a_little_beyond_the_bus_is_a_warning_with_what_the_bus_allows() {
     let text = newcomer(&EC_45.replacen("4750 rpm", "5300 rpm", 1), 24, 8);
     let ast = parse_toml(&text, "ec45.toml").expect("is read");
-    let (_, origins) = check(&ast).expect("is accepted");
-    let told: Vec<String> = origins.warnings().iter().map(ToString::to_string).collect();
+    let (spec, origins) = check(&ast).expect("is accepted");
+    let told = warnings(&spec, &origins);
+    let told: Vec<String> = told.iter().map(ToString::to_string).collect();
     let [told] = told.as_slice() else {
         panic!("{told:?}");
     };
     assert!(
-        told.contains("warning[HX0604]: `rated_speed`: 5300 rpm: there the bus of 24 V leaves "),
+        told.contains("warning[HX0604]: `rated_speed`: 5300 rpm: there the bus of 24 V drives the whole current up to "),
         "{told}"
     );
-    assert!(
-        told.contains("with the rated current it reaches "),
-        "{told}"
-    );
+    assert!(told.contains("; the rating lasts to "), "{told}");
 }

@@ -1,0 +1,358 @@
+//! The envelope: the greatest current and torque over speed for which the bus drives the whole shape of
+//! the drive's current reference. Beyond it the legs cut the shape: the torque ripples, then falls.
+//!
+//! At a steady speed a proportional reference needs, from an angle theta to that a period later,
+//!
+//! v = (i(theta + d) - A i(theta))/B + e, A = exp(-R Ts/L), B = (1 - A)/R, d = omega_e Ts,
+//!
+//! with e the mean of the EMF in between. That is linear in the set-point, so each angle and each pair of
+//! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
+//! its two phases; its commutations take more and are left out.
+
+use super::emf::{zero_sum_integral, zero_sum_shape};
+use crate::spec::{EmfShape, Reference, Spec};
+use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// Angles of a sector at which the voltage is looked at. The shapes' symmetries repeat the rest of a turn.
+const ANGLES: u32 = 60;
+
+/// Steps of the search for a speed: to a millionth of the greatest.
+const HALVINGS: u32 = 20;
+
+/// What the greatest current of a drive depends on, SI units; motor values per phase of the star.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Envelope {
+    /// Shape of the phase EMF.
+    pub emf_shape: EmfShape,
+    /// Shape of the current reference.
+    pub reference: Reference,
+    /// Pole pairs.
+    pub pole_pairs: f64,
+    /// Ohm.
+    pub resistance: f64,
+    /// Henry.
+    pub inductance: f64,
+    /// Peak phase EMF over mechanical speed, V s/rad.
+    pub emf_constant: f64,
+    /// Control period, second.
+    pub t_s: f64,
+    /// Bus voltage, volt.
+    pub v_bus: f64,
+    /// Share of the bus voltage that two legs reach between them, 0 to 1.
+    pub reach: f64,
+    /// Largest set-point, ampere.
+    pub max_current: f64,
+    /// Greatest current drawn from the bus, ampere.
+    pub bus_current: Option<f64>,
+}
+
+/// Voltage between two legs over one period: volt per ampere of set-point, and volt.
+struct Line {
+    drop: f64,
+    emf: f64,
+}
+
+impl Envelope {
+    /// Of a drive at its nominal bus voltage.
+    pub fn of(spec: &Spec) -> Self {
+        let (motor, inverter) = (&spec.motor, &spec.inverter);
+        Self {
+            emf_shape: motor.emf_shape,
+            reference: spec.controller.common().reference,
+            pole_pairs: f64::from(motor.pole_pairs),
+            resistance: motor.resistance,
+            inductance: motor.inductance,
+            emf_constant: motor.emf_constant,
+            t_s: inverter.t_s,
+            v_bus: inverter.v_bus,
+            reach: spec.reach_share(),
+            max_current: inverter.max_current,
+            bus_current: inverter.bus_currents.drawn,
+        }
+    }
+
+    /// Torque per ampere of set-point, Nm/A.
+    pub fn torque_constant(&self) -> f64 {
+        self.emf_constant * self.torque_factor()
+    }
+
+    /// Greatest motoring torque at a speed in mechanical rad/s, Nm; 0 where the EMF alone takes more than the
+    /// legs reach.
+    pub fn torque(&self, omega_m: f64) -> f64 {
+        self.torque_constant() * self.set_point(omega_m)
+    }
+
+    /// Greatest speed at which a motoring torque in Nm is within the envelope, mechanical rad/s; `None` if it
+    /// is not even at standstill.
+    pub fn speed(&self, torque: f64) -> Option<f64> {
+        // Bounds without their noise: a torque on the largest set-point is held.
+        let torque = torque * (1.0 - 1e-9);
+        if self.torque(0.0) < torque {
+            return None;
+        }
+        let mut held = 0.0;
+        let mut lost = self.idle_speed();
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(held, lost);
+            if self.torque(middle) < torque {
+                lost = middle;
+            } else {
+                held = middle;
+            }
+        }
+        Some(held)
+    }
+
+    /// Speed at which the EMF takes all that the legs reach, mechanical rad/s.
+    pub fn idle_speed(&self) -> f64 {
+        self.line_voltage() / (self.emf_constant * self.emf_shape.line_to_line_peak())
+    }
+
+    /// Greatest set-point at a speed, ampere.
+    pub fn set_point(&self, omega_m: f64) -> f64 {
+        let current = self.max_current.min(self.of_voltage(omega_m));
+        self.bus_current
+            .map_or(current, |bus| current.min(self.of_power(omega_m, bus)))
+            .max(0.0)
+    }
+
+    /// Bus voltage that a set-point in ampere takes at a speed in mechanical rad/s, volt.
+    pub fn bus_voltage(&self, omega_m: f64, set_point: f64) -> f64 {
+        let lines = self.lines(omega_m).into_iter();
+        let most = lines.map(|line| (set_point * line.drop + line.emf).abs());
+        most.fold(0.0, f64::max) / self.reach
+    }
+
+    /// Greatest phase current of the largest set-point, ampere.
+    pub fn peak_current(&self) -> f64 {
+        self.max_current
+            * match self.reference {
+                Reference::QuasiSquare => 1.0,
+                Reference::Proportional => self.emf_shape.proportional_peak(),
+            }
+    }
+
+    fn line_voltage(&self) -> f64 {
+        self.v_bus * self.reach
+    }
+
+    fn torque_factor(&self) -> f64 {
+        match self.reference {
+            Reference::QuasiSquare => self.emf_shape.quasi_square_factor(),
+            Reference::Proportional => self.emf_shape.proportional_factor(),
+        }
+    }
+
+    /// By the voltages between all legs.
+    fn of_voltage(&self, omega_m: f64) -> f64 {
+        let reach = self.line_voltage();
+        let bound = |least: f64, line: Line| {
+            let left = reach - line.emf * line.drop.signum();
+            least.min(left / line.drop.abs())
+        };
+        self.lines(omega_m).into_iter().fold(f64::INFINITY, bound)
+    }
+
+    /// What a set-point of one ampere and the EMF take between two legs over a sector.
+    fn lines(&self, omega_m: f64) -> Vec<Line> {
+        match self.reference {
+            // Two phases carry one current; their EMF is greatest in the middle of the sector.
+            Reference::QuasiSquare => vec![Line {
+                drop: 2.0 * self.resistance,
+                emf: self.emf_constant * omega_m * self.emf_shape.line_to_line_peak(),
+            }],
+            Reference::Proportional => self.lines_of_three(omega_m),
+        }
+    }
+
+    fn lines_of_three(&self, omega_m: f64) -> Vec<Line> {
+        let turn = omega_m * self.pole_pairs * self.t_s;
+        let decay = (-self.resistance * self.t_s / self.inductance).exp();
+        let gain = self.resistance / (1.0 - decay);
+        let angles = sector().flat_map(|theta| {
+            let (from, to) = (self.unit_currents(theta), self.unit_currents(theta + turn));
+            let emf = self.mean_emf(theta, turn);
+            [(0, 1), (1, 2), (2, 0)].map(|(p, q)| Line {
+                drop: gain * ((to[p] - to[q]) - decay * (from[p] - from[q])),
+                emf: omega_m * (emf[p] - emf[q]),
+            })
+        });
+        angles.collect()
+    }
+
+    /// By the power that a bus current brings: torque times speed and copper losses.
+    fn of_power(&self, omega_m: f64, bus_current: f64) -> f64 {
+        let power = self.v_bus * bus_current;
+        let torque = self.torque_constant() * omega_m;
+        let loss = self.resistance * self.squared_currents();
+        // The positive root of loss I^2 + torque I = power, without cancellation.
+        2.0 * power / (torque + (torque * torque + 4.0 * loss * power).sqrt())
+    }
+
+    /// Mean of the phase currents' squares, summed, per squared ampere of set-point.
+    fn squared_currents(&self) -> f64 {
+        match self.reference {
+            Reference::QuasiSquare => 2.0,
+            Reference::Proportional => {
+                let squares = sector().map(|theta| {
+                    let currents = self.unit_currents(theta);
+                    currents
+                        .iter()
+                        .map(|current| current * current)
+                        .sum::<f64>()
+                });
+                squares.sum::<f64>() / f64::from(ANGLES)
+            }
+        }
+    }
+
+    /// Phase currents per ampere of set-point, parallel to the EMF: (2/3) (k_t/k_phase) s/|f|^2.
+    fn unit_currents(&self, theta: f64) -> [f64; 3] {
+        let shape = phases(|theta| zero_sum_shape(self.emf_shape, theta), theta);
+        let squared_length = 2.0 / 3.0 * shape.iter().map(|value| value * value).sum::<f64>();
+        let scale = 2.0 / 3.0 * self.torque_factor() / squared_length;
+        shape.map(|value| scale * value)
+    }
+
+    /// Mean phase EMF over a turn of `turn` from `theta` on, per rad/s.
+    fn mean_emf(&self, theta: f64, turn: f64) -> [f64; 3] {
+        let mean = if turn < 1e-6 {
+            phases(|theta| zero_sum_shape(self.emf_shape, theta), theta)
+        } else {
+            let integral = |theta| zero_sum_integral(self.emf_shape, theta);
+            let (from, to) = (phases(integral, theta), phases(integral, theta + turn));
+            [0, 1, 2].map(|phase| (to[phase] - from[phase]) / turn)
+        };
+        mean.map(|value| self.emf_constant * value)
+    }
+}
+
+/// The angles of a sector, radian.
+fn sector() -> impl Iterator<Item = f64> {
+    (0..ANGLES).map(|angle| FRAC_PI_3 * f64::from(angle) / f64::from(ANGLES))
+}
+
+/// A function of phase a for the three phases.
+fn phases(of_a: impl Fn(f64) -> f64, theta: f64) -> [f64; 3] {
+    [0.0, 1.0, 2.0].map(|lag| of_a(theta - lag * TAU / 3.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Envelope;
+    use crate::spec::{EmfShape, Reference};
+
+    /// The 660 W motor of the paper at 48 V.
+    const DRIVE: Envelope = Envelope {
+        emf_shape: EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        },
+        reference: Reference::Proportional,
+        pole_pairs: 4.0,
+        resistance: 0.135,
+        inductance: 0.22e-3,
+        emf_constant: 0.0824,
+        t_s: 50e-6,
+        v_bus: 48.0,
+        reach: 1.0,
+        max_current: 22.0,
+        bus_current: None,
+    };
+
+    fn near(left: f64, right: f64) -> bool {
+        (left / right - 1.0).abs() < 1e-3
+    }
+
+    #[test]
+    fn a_sine_in_short_periods_needs_the_voltage_of_its_phasor() {
+        let drive = Envelope {
+            emf_shape: EmfShape::Sinusoidal,
+            t_s: 1e-7,
+            max_current: f64::INFINITY,
+            ..DRIVE
+        };
+        for omega_m in [20.0, 150.0, 300.0] {
+            let set_point = drive.set_point(omega_m);
+            let reactance = 4.0 * omega_m * drive.inductance;
+            let real = drive.resistance * set_point + drive.emf_constant * omega_m;
+            let voltage = 3_f64.sqrt() * real.hypot(reactance * set_point);
+            assert!(near(voltage, 48.0), "{omega_m}: {voltage}");
+        }
+    }
+
+    #[test]
+    fn a_sine_in_long_periods_needs_the_voltage_of_its_chord() {
+        let drive = Envelope {
+            emf_shape: EmfShape::Sinusoidal,
+            max_current: f64::INFINITY,
+            ..DRIVE
+        };
+        let omega_m = 300.0;
+        // In the frame of the angle in the middle of a period: from -half to half of its turn.
+        let half: f64 = 4.0 * omega_m * drive.t_s / 2.0;
+        let decay = (-drive.resistance * drive.t_s / drive.inductance).exp();
+        let gain = drive.resistance / (1.0 - decay);
+        let set_point = drive.set_point(omega_m);
+        let real = gain * set_point * (1.0 - decay) * half.cos()
+            + drive.emf_constant * omega_m * half.sin() / half;
+        let imaginary = gain * set_point * (1.0 + decay) * half.sin();
+        let voltage = 3_f64.sqrt() * real.hypot(imaginary);
+        assert!(near(voltage, 48.0), "{voltage}");
+    }
+
+    #[test]
+    fn a_quasi_square_current_has_the_bus_less_the_emf_of_two_phases() {
+        let drive = Envelope {
+            reference: Reference::QuasiSquare,
+            ..DRIVE
+        };
+        // (48 V - 2 * 0.0824 * 209.44 V)/(0.27 ohm) is 49.9 A.
+        assert!(near(drive.set_point(209.44), 22.0));
+        assert!(near(drive.set_point(270.0), (48.0 - 44.496) / 0.27));
+        assert!(near(drive.torque(270.0), 2.0 * 0.0824 * 12.978));
+        assert_eq!(drive.torque(292.0), 0.0);
+    }
+
+    #[test]
+    fn the_speed_of_a_torque_is_where_the_torque_ends() {
+        for torque in [0.1, 1.0, 3.3, 3.62] {
+            let speed = DRIVE.speed(torque).expect("is within");
+            assert!(DRIVE.torque(speed) >= torque * (1.0 - 1e-6));
+            assert!(DRIVE.torque(speed * 1.0001) < torque);
+        }
+        assert_eq!(DRIVE.speed(3.64), None);
+    }
+
+    #[test]
+    fn the_bus_voltage_of_a_point_is_the_bus_on_whose_envelope_it_is() {
+        for set_point in [5.0, 20.0] {
+            let v_bus = DRIVE.bus_voltage(230.0, set_point);
+            let drive = Envelope {
+                v_bus,
+                max_current: f64::INFINITY,
+                ..DRIVE
+            };
+            assert!(near(drive.set_point(230.0), set_point));
+        }
+        let window = Envelope {
+            reach: 0.9,
+            ..DRIVE
+        };
+        assert!(near(
+            0.9 * window.bus_voltage(230.0, 20.0),
+            DRIVE.bus_voltage(230.0, 20.0)
+        ));
+    }
+
+    #[test]
+    fn a_bus_current_brings_torque_and_losses() {
+        let drive = Envelope {
+            reference: Reference::QuasiSquare,
+            bus_current: Some(5.0),
+            ..DRIVE
+        };
+        let (omega_m, set_point) = (100.0, drive.set_point(100.0));
+        let power = drive.torque(omega_m) * omega_m + 2.0 * 0.135 * set_point * set_point;
+        assert!(near(power, 48.0 * 5.0), "{power}");
+    }
+}
