@@ -10,6 +10,7 @@ pub mod boards;
 pub mod closed_loop;
 pub mod counted;
 pub mod engine;
+pub mod envelope;
 mod error;
 pub mod faults;
 mod inputs;

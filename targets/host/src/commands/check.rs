@@ -5,6 +5,7 @@
 
 use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
 use clap::Args;
+use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{HallCapture, Reference, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
@@ -66,10 +67,10 @@ pub struct Checked {
     pub verdict: String,
     /// Demanded torque, Nm.
     pub torque_nm: f64,
-    /// Voltage that the rating takes, line to line, volt.
+    /// Greatest voltage between two legs that the demanded torque takes at rated speed, volt.
     pub rating_v: f64,
-    /// Speed at which rated current takes all that legs reach of the bus, rpm.
-    pub bus_limit_rpm: f64,
+    /// Speed up to which the bus drives the whole current of the demanded torque, rpm.
+    pub envelope_rpm: f64,
     /// ADC counts of the rated current.
     pub rated_counts: f64,
     /// Greatest current drawn from the bus, ampere, where it is limited.
@@ -120,18 +121,19 @@ impl Checked {
             .iter()
             .map(|share| at_speed(drive, share * motor.rated_speed))
             .collect::<Result<Vec<_>, Failure>>()?;
-        let line_to_line = motor.emf_constant * motor.emf_shape.line_to_line_peak();
-        let drop = 2.0 * motor.resistance * motor.rated_current;
-        let reach = inverter.v_bus * drive.spec.reach_share();
-        let bus_limit = (reach - drop) / line_to_line;
+        let envelope = Envelope::of(&drive.spec);
+        let torque = drive.demand();
+        let set_point = torque / envelope.torque_constant();
+        let taken = envelope.bus_voltage(motor.rated_speed, set_point);
+        let lasts = envelope.speed(torque).unwrap_or(0.0);
         let mut checked = Self {
             motor: drive.motor.clone(),
             controller: drive.variant.clone(),
             works: true,
             verdict: String::new(),
-            torque_nm: drive.demand(),
-            rating_v: line_to_line * motor.rated_speed + drop,
-            bus_limit_rpm: bus_limit * 30.0 / std::f64::consts::PI,
+            torque_nm: torque,
+            rating_v: taken * envelope.reach,
+            envelope_rpm: lasts * 30.0 / std::f64::consts::PI,
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
             return_current_limit_a: inverter.bus_currents.returned,
@@ -233,11 +235,11 @@ impl Checked {
                 engineering(inverter.trip_current, "A"),
             ),
             format!(
-                "bus         the rating takes {}{} of {}; rated current lasts to {:.0} rpm",
+                "bus         the rating takes {}{} of {}; its whole current lasts to {:.0} rpm",
                 engineering(self.rating_v, "V"),
                 reached(&drive.spec),
                 engineering(inverter.v_bus, "V"),
-                self.bus_limit_rpm,
+                self.envelope_rpm,
             ),
         ];
         lines.extend(self.limits_of_bus());

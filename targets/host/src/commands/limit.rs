@@ -5,6 +5,7 @@ use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_wa
 use clap::Args;
 use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
 use hexagen_lab::engine::{Prepared, SelectedMotor};
+use hexagen_lab::envelope::{SpeedBounds, envelope_on};
 use hexagen_lab::text::significant;
 use serde::Serialize;
 
@@ -27,6 +28,9 @@ pub struct Outcome {
     /// The limit.
     #[serde(flatten)]
     pub limit: SpeedLimit,
+    /// What bounds the limit of a motoring torque.
+    #[serde(flatten)]
+    pub bounds: Option<SpeedBounds>,
     /// The limit of the same drive with sensors in the phases and legs that may be high all the time;
     /// none where the board limits no leg.
     pub without_window: Option<SpeedLimit>,
@@ -88,9 +92,12 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failur
 /// As [`collect`], or a drive that tripped above its limit.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, limit, without_window) = collect(options)?;
+    let torque = options.run.torque(&drive);
+    let envelope = envelope_on(&drive.spec, &options.run.plant.plant(&drive)?);
     let outcome = Outcome {
         ran: Ran::of(&drive, options.run.model()),
-        torque_nm: options.run.torque(&drive),
+        torque_nm: torque,
+        bounds: SpeedBounds::of(&envelope, torque),
         limit,
         without_window,
     };
@@ -112,8 +119,14 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
                 found(free, outcome.torque_nm, drive)
             )
         });
+    let bounds = outcome.bounds.map_or_else(String::new, |bounds| {
+        format!(
+            "\nThe bus drives the whole current up to {:.0} rpm; no profile within its peak gives the torque beyond {:.0} rpm.",
+            bounds.envelope_rpm, bounds.any_profile_rpm
+        )
+    });
     print_text(&format!(
-        "{}: {} Nm {}{free}",
+        "{}: {} Nm {}{free}{bounds}",
         outcome.ran.name(),
         significant(outcome.torque_nm, 4),
         found(&outcome.limit, outcome.torque_nm, drive)

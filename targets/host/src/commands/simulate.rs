@@ -10,6 +10,7 @@ use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
 };
 use hexagen_lab::engine::{Prepared, run_of};
+use hexagen_lab::envelope::envelope_on;
 use hexagen_lab::plant::PlantParams;
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
@@ -201,7 +202,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             100.0 * SETTLED
         ));
     }
-    if let Some(text) = beyond_envelope(&drive, options, &outcome) {
+    let plant = options.run.plant.plant(&drive)?;
+    if let Some(text) = beyond_envelope(&drive, &plant, options, &outcome) {
         warn(&text);
     }
     if options.run.json {
@@ -212,14 +214,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     Failure::of_trip(outcome.tripped)
 }
 
-/// Share of saturated periods above which the bus is what limits the torque, percent.
-const SATURATED: f64 = 10.0;
-
-/// Torque over the demand below which the demand is not met.
-const MET: f64 = 0.98;
+/// A demand over the envelope's torque from which on it is beyond the envelope.
+const BEYOND: f64 = 1.001;
 
 /// What a speed or torque beyond the drive's means; none within, and none with a speed loop.
-fn beyond_envelope(drive: &Prepared, options: &Options, outcome: &Outcome) -> Option<String> {
+fn beyond_envelope(
+    drive: &Prepared,
+    plant: &PlantParams,
+    options: &Options,
+    outcome: &Outcome,
+) -> Option<String> {
     if options.speed_set.is_some() {
         return None;
     }
@@ -230,19 +234,18 @@ fn beyond_envelope(drive: &Prepared, options: &Options, outcome: &Outcome) -> Op
             "--rpm {rpm}: beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor"
         ));
     }
-    let greatest = drive.spec.inverter.max_current * drive.spec.torque_constant();
+    let envelope = envelope_on(&drive.spec, plant);
+    let omega_m = rpm * TAU / 60.0;
+    let greatest = envelope.max_current * envelope.torque_constant();
     let demand = outcome.torque_nm.clamp(-greatest, greatest);
-    let (torque, saturated) = (
-        outcome.figures.mean_torque_nm?,
-        outcome.figures.saturated_pct?,
-    );
-    let is_short = torque * demand.signum() < MET * demand.abs();
-    (is_short && saturated > SATURATED).then(|| {
+    let within = envelope.torque(omega_m.abs());
+    let is_motoring = demand * omega_m > 0.0;
+    (is_motoring && demand.abs() > within * BEYOND).then(|| {
         format!(
-            "{} Nm at {rpm} rpm: the bus of {} drives only {} Nm there; `hexagen limit {}` prints up to which speed the torque lasts",
+            "{} Nm at {rpm} rpm: the bus of {} drives the whole current only up to {} Nm there, beyond which it is cut; `hexagen limit {}` prints up to which speed the torque lasts",
             significant(demand, 4),
-            engineering(drive.spec.inverter.v_bus, "V"),
-            significant(torque, 4),
+            engineering(envelope.v_bus, "V"),
+            significant(within, 4),
             outcome.ran.motor
         )
     })

@@ -610,7 +610,9 @@ fn a_demand_beyond_the_envelope_is_a_warning() {
     };
     let short = warned("560");
     assert!(
-        short.contains("5.968 Nm at 560 rpm: the bus of 36 V drives only 1."),
+        short.contains(
+            "5.968 Nm at 560 rpm: the bus of 36 V drives the whole current only up to 0."
+        ),
         "{short}"
     );
     let fast = warned("900");
