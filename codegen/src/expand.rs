@@ -10,6 +10,7 @@
 use crate::diagnostics::{Anchors, Diagnostic, Diagnostics};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, write_rust};
+use crate::field_items::references;
 use crate::interface::Interface;
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
@@ -29,6 +30,7 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
     let surface = surface(&input);
     let (mut files, anchors) = (vec![], input.anchors());
     let generated = generate_input(&input, root, &mut files);
+    let fields = references(&input.ast, &surface.attributes);
     let tracking = files.iter().map(|file| track(file));
     match generated {
         Ok((Generated { graph, interface }, warnings)) => {
@@ -41,12 +43,12 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
             let warnings = warnings
                 .iter()
                 .map(|warning| warning.to_compile_warning(&anchors));
-            quote!(#code #(#warnings)* #(#tracking)*)
+            quote!(#code #fields #(#warnings)* #(#tracking)*)
         }
         Err(errors) => {
             let errors = errors.to_compile_errors(&anchors);
             let shape = empty_shape(&input.ast, &surface);
-            quote!(#errors #shape #(#tracking)*)
+            quote!(#errors #shape #fields #(#tracking)*)
         }
     }
 }

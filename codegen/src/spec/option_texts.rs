@@ -37,7 +37,7 @@ fn shared() -> impl Iterator<Item = &'static Rule> {
 }
 
 /// The words with their meanings, or the range.
-fn values(rule: &Rule) -> String {
+pub(super) fn values(rule: &Rule) -> String {
     let listed = |words: &[Word]| {
         let words = words.iter().map(|word| match word.meaning {
             "" => format!("`{}`", word.word),
@@ -85,7 +85,8 @@ fn alternatives(words: &[Word]) -> String {
     words.join("|")
 }
 
-fn default(rule: &Rule) -> String {
+/// The default, in Markdown.
+pub(super) fn default(rule: &Rule) -> String {
     match rule.preset {
         Preset::Value(value) => format!("`{value}`"),
         Preset::Rule(text) => text.to_owned(),
