@@ -7,9 +7,7 @@
 
 use crate::diagnostics::Location;
 use crate::spec::ast::{Field, Section, Value};
-use crate::spec::field_texts::{
-    FieldText, kind_texts, own_texts, section_texts, shared_texts,
-};
+use crate::spec::field_texts::{FieldText, kind_texts, own_texts, section_texts, shared_texts};
 use crate::spec::{KINDS, Kind, Rule, SpecAst, schema};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::quote;

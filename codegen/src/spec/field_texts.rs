@@ -2,7 +2,7 @@
 //! inverter's field is its row of the reference page, that of an option its row of the table.
 
 use super::controller::{KINDS, Kind, common};
-use super::option_texts::{default, values};
+use super::option_texts::{default, sentence, values};
 use super::rule::Rule;
 use super::schema::{INVERTER, MOTOR};
 
@@ -49,7 +49,7 @@ pub(crate) fn kind_texts() -> Vec<FieldText> {
     let text = |kind: &Kind| FieldText {
         name: kind.name,
         example: kind.name,
-        text: paragraphs([format!("{}.", kind.title), kind.notes.to_owned()]),
+        text: paragraphs([format!("{}.", sentence(kind.title)), kind.notes.to_owned()]),
     };
     KINDS.iter().map(text).collect()
 }
@@ -142,11 +142,16 @@ mod tests {
             "{text}"
         );
         assert!(
-            text.ends_with("\n\nDefault: none, needed.\n\nExample: `resistance: 135 mohm per_phase`."),
+            text.ends_with(
+                "\n\nDefault: none, needed.\n\nExample: `resistance: 135 mohm per_phase`."
+            ),
             "{text}"
         );
         let emf = &shared_texts()[0].text;
-        assert!(emf.contains("\n\nValues: `estimated` (from the voltage"), "{emf}");
+        assert!(
+            emf.contains("\n\nValues: `estimated` (from the voltage"),
+            "{emf}"
+        );
     }
 
     #[test]

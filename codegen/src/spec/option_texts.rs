@@ -94,13 +94,20 @@ pub(super) fn default(rule: &Rule) -> String {
     }
 }
 
+/// A phrase as a sentence begins.
+pub(super) fn sentence(phrase: &str) -> String {
+    let mut letters = phrase.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
 fn plain(markdown: &str) -> String {
     markdown.replace('`', "")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{KINDS, controller, default, values};
+    use super::{KINDS, controller, default, sentence, values};
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
     use crate::spec::rule::{Kind, Preset, Rule};
@@ -154,12 +161,6 @@ mod tests {
             text.push_str(&row);
         }
         text
-    }
-
-    fn sentence(phrase: &str) -> String {
-        let mut letters = phrase.chars();
-        let first = letters.next().map(|first| first.to_uppercase().to_string());
-        first.unwrap_or_default() + letters.as_str()
     }
 
     /// `INSTA_UPDATE=always` writes the page, as it does snapshots.
