@@ -3,7 +3,7 @@
 
 mod session;
 
-use lsp_types::{Code, Diagnostic, Location};
+use lsp_types::{Code, Diagnostic, Location, Message};
 use session::Session;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -29,7 +29,7 @@ hexagen::controller! {
             bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, adc_range: 40 A,
             hall_timer_clock: 1 MHz,
         },
-        controller: fcs-mpc { emf: model, off_leg: open },
+        controller: fcs-mpc { emf: model, off_leg: nominal },
     }
 }
 
@@ -138,14 +138,14 @@ fn errors_come_and_go_while_one_types(session: &mut Session) {
         ("135 mohm", "135 mH", "135 mH", "[HX0203]"),
         ("bus_voltage: 48 V", "bus_voltage: 4 V", "4 V", "[HX0302]"),
         ("inductance:", "inductanse:", "inductanse", "[HX0103]"),
-        ("emf: model", "emf: modell", "modell", "[HX0204]"),
+        ("emf: model", "emf: modell", "modell", "[HX0207]"),
     ] {
         session.replace(right, wrong);
         let at = session.position("pub HubDrive {", marked);
         let found = session.diagnostics();
         let is_meant = |found: &Diagnostic| {
             found.code == Some(Code::String("macro-error".to_owned()))
-                && format!("{:?}", found.message).contains(code)
+                && matches!(&found.message, Message::String(text) if text.starts_with(code))
                 && found.range.start == at
                 && call(session).contains(&found.range.end.line)
         };
