@@ -91,11 +91,13 @@ fn surface(input: &MacroInput) -> Surface {
         .attributes
         .iter()
         .partition(|attribute| attribute.path().is_ident("doc"));
+    // What follows is a paragraph of its own.
+    let end = (!docs.is_empty()).then(|| quote!(#[doc = ""]));
     Surface {
         name: input.name.clone(),
         visibility: input.visibility.to_token_stream(),
         attributes: quote!(#(#others)*),
-        type_attributes: quote!(#(#docs)*),
+        type_attributes: quote!(#(#docs)* #end),
     }
 }
 

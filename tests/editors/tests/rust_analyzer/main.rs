@@ -61,7 +61,11 @@ fn an_editor_shows_documentation_definitions_and_errors() {
 fn documentation_is_markdown(session: &mut Session) {
     let call = "pub HubDrive {";
     for (before, text, begin) in [
-        (BEHIND_THE_CALL, "HubDrive", "Rear hub drive.\n"),
+        (
+            BEHIND_THE_CALL,
+            "HubDrive",
+            "Rear hub drive.\n\nFinite-control-set",
+        ),
         (
             "    HubDrive::",
             "ADC_BITS",
