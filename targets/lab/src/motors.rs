@@ -3,6 +3,7 @@
 use crate::closed_loop::{Measurement, Trip};
 use crate::engine::{PlantOptions, Prepared, SelectedMotor};
 use crate::{LabError, Progress};
+use hexagen_codegen::design::Envelope;
 use hexagen_codegen::spec::Spec;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -53,6 +54,8 @@ pub struct LibraryMotor {
     pub t_s: Option<f64>,
     /// Turn of the rotor in a control period at rated speed, electrical degrees.
     pub degrees_per_period: Option<f64>,
+    /// Speed up to which the bus drives the whole current of the demand, percent of the rated one.
+    pub envelope_pct: Option<f64>,
     /// Whether the controller of its file can be generated.
     pub generates: bool,
     /// Why not.
@@ -190,6 +193,7 @@ fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
         rated_rpm: None,
         t_s: None,
         degrees_per_period: None,
+        envelope_pct: None,
         generates: false,
         reason: None,
         points: Vec::new(),
@@ -220,6 +224,9 @@ fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
         rated_rpm: Some(drive.rated_rpm()),
         t_s: Some(inverter.t_s),
         degrees_per_period: Some(degrees_per_period(&drive.spec)),
+        envelope_pct: Envelope::of(&drive.spec)
+            .speed(drive.demand())
+            .map(|lasts| 100.0 * lasts / spec.rated_speed),
         generates: true,
         is_right: !points.is_empty() && wrong.is_none(),
         limit: wrong.map(RatedPoint::limit),

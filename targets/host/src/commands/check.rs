@@ -250,7 +250,7 @@ impl Checked {
                 engineering(inverter.trip_current, "A"),
             ),
             format!(
-                "bus         the rating takes {}{} of {}; its whole current lasts to {:.0} rpm",
+                "bus         the rating takes {}{} of {}; whole current to {:.0} rpm",
                 engineering(self.rating_v, "V"),
                 reached(&drive.spec),
                 engineering(inverter.v_bus, "V"),

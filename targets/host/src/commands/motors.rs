@@ -34,7 +34,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let [fine, coarse] = RIPPLE;
     print_text(&format!(
         "The default drive at rated torque and nominal bus voltage, by share of the rated speed; deg/Ts: electrical degrees\n\
-         in a control period at rated speed. Right: torque within {TORQUE} %, ripple at most {fine} % up to {COARSE} deg/Ts, {coarse} % above; else\n\
+         in a control period at rated speed; whole to: speed up to which the bus drives the rating's whole current. Right: torque within {TORQUE} %, ripple at most {fine} % up to {COARSE} deg/Ts, {coarse} % above; else\n\
          what limits the drive."
     ))?;
     for motor in &motors {
@@ -61,6 +61,7 @@ fn table(motors: &[LibraryMotor]) -> Table {
             "rated Nm",
             "rated rpm",
             "deg/Ts",
+            "whole to %",
             &torque,
             &ripple,
             "right",
@@ -88,6 +89,7 @@ fn table(motors: &[LibraryMotor]) -> Table {
             number(motor.rated_torque_nm, 1.0),
             number(motor.rated_rpm, 1.0),
             number(motor.degrees_per_period, 1.0),
+            number(motor.envelope_pct, 1.0),
             points(|point| point.torque_pct),
             points(|point| point.ripple_pct),
             verdict(motor).to_owned(),
