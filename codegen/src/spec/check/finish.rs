@@ -1,6 +1,6 @@
 //! The checked inverter: defaults and checks that depend on motor and controller.
 
-use super::inverter::Inverter;
+use super::inverter::{Adc, Inverter};
 use super::motor::Motor;
 use super::sensing::Sensing;
 use super::{currents, relations};
@@ -81,7 +81,7 @@ pub(super) fn inverter(
         other_sensors: others.to_vec(),
         sensed_phases: inverter.sensing.phases,
         current_sensing: inverter.sensing.place?,
-        current_sum: current_sum(reader, &inverter.sensing, (trip_current, adc.gain), errors),
+        current_sum: current_sum(reader, &inverter.sensing, adc, trip_current, errors),
         minimum_low_time: inverter.sensing.minimum_low_time,
         offset_tolerance: adc.offset_tolerance,
         trip_current,
@@ -104,6 +104,9 @@ pub(super) fn inverter(
 /// percent, and their conversions by an instant.
 const SUM_TOLERANCE: f64 = 0.1;
 
+/// The least that it becomes, over the sensors' range: the zeros of three sensors drift by some thousandths of it.
+const SUM_OF_RANGE: f64 = 0.02;
+
 /// Default of the samples in a row with a larger sum that are a fault.
 const SUM_SAMPLES: u32 = 20;
 
@@ -114,10 +117,12 @@ const LEAST_SUM: f64 = 2.0;
 fn current_sum(
     reader: &Reader,
     sensing: &Sensing,
-    (trip_current, gain): (f64, f64),
+    adc: &Adc,
+    trip_current: f64,
     errors: &mut Collector,
 ) -> Option<CurrentSum> {
     const TOLERANCE: &str = "current_sum_tolerance";
+    let gain = adc.gain;
     if let Some(tolerance) = sensing.sum_tolerance {
         let part = reader.part(TOLERANCE, String::new);
         let least = LEAST_SUM * gain;
@@ -135,7 +140,8 @@ fn current_sum(
         }
     }
     let samples = sensing.sum_samples.unwrap_or(SUM_SAMPLES);
-    let default = (SUM_TOLERANCE * trip_current / gain).ceil() * gain;
+    let default = (SUM_TOLERANCE * trip_current).max(SUM_OF_RANGE * adc.reach);
+    let default = (default / gain).ceil() * gain;
     let is_watched = sensing.phases == SensedPhases::Abc && samples > 0;
     is_watched.then_some(CurrentSum {
         tolerance: sensing.sum_tolerance.unwrap_or(default),
