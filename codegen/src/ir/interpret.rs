@@ -64,6 +64,11 @@ impl<'g> Machine<'g> {
         }
     }
 
+    /// A value of the function that ran last; `None` before any ran. Of a stage that did not run it is 0.
+    pub fn value(&self, value: Value) -> Option<i64> {
+        self.values.get(value.index()).copied()
+    }
+
     /// Runs one step; returns the outputs in the order of the step's list.
     ///
     /// # Errors

@@ -42,7 +42,7 @@ impl TorqueBounds {
             points.collect()
         };
         Self {
-            envelope: curve(|envelope, omega_m| envelope.torque(omega_m)),
+            envelope: curve(|limits, omega_m| Envelope::torque(limits, omega_m)),
             any_profile: curve(any_profile::torque),
         }
     }

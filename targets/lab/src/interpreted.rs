@@ -3,7 +3,7 @@
 use crate::{Inputs, limits, sensors};
 use hexagen::{Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
 use hexagen_codegen::interface::{Interface, ResidualWatch};
-use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter};
+use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
 use std::sync::{Arc, OnceLock};
@@ -132,6 +132,11 @@ impl<'g> Interpreted<'g> {
     /// The supervisor's result.
     pub fn supervisor(&self) -> &Supervisor {
         &self.supervisor
+    }
+
+    /// A value of the law in the last period.
+    pub fn word(&self, value: Value) -> Option<i64> {
+        self.machine.value(value)
     }
 
     fn try_step(&mut self, sample: &Sample) -> Result<Legs, Escape> {

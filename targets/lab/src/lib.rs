@@ -19,6 +19,7 @@ pub mod motors;
 pub mod plant;
 mod progress;
 mod readings;
+pub mod replay;
 pub mod report;
 pub mod reproduction;
 pub mod results;

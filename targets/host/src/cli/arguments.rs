@@ -3,7 +3,7 @@
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
     boards, check, compare, completions, explain, faults, generate, limit, motors, new, prove,
-    report, reproduce, simulate, verify,
+    replay, report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, option_help};
@@ -44,6 +44,8 @@ pub enum Command {
     Limit(limit::Options),
     /// Breaks one thing at a time, and says whether a controller trips and how large the current gets
     Faults(faults::Options),
+    /// Prints every word of a drive from a log of its samples and set-points
+    Replay(replay::Options),
     /// Compares generated code with the bit-true reference, bit for bit
     Verify(verify::Options),
     /// Proves the absence of overflow and the error bounds with Gappa

@@ -45,6 +45,7 @@ pub fn run() -> ExitCode {
         Command::Simulate(options) => commands::simulate::run(&options),
         Command::Limit(options) => commands::limit::run(&options),
         Command::Faults(options) => commands::faults::run(&options),
+        Command::Replay(options) => commands::replay::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
         Command::Prove(options) => commands::prove::run(&options),
         Command::Compare(options) => commands::compare::run(&options),

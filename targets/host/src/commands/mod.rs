@@ -15,6 +15,7 @@ pub mod motors;
 pub mod new;
 pub mod prove;
 pub mod ran;
+pub mod replay;
 pub mod report;
 pub mod reproduce;
 pub mod selected;

@@ -1,0 +1,250 @@
+//! A log of what a drive was given, replayed: a step is a function of its words, bit for bit, so the log
+//! shows every word of a drive that ran elsewhere.
+
+use crate::Interpreted;
+use crate::engine::Prepared;
+use hexagen::{Command, Legs, Mode, Sample};
+use hexagen_codegen::interface::Unit;
+use hexagen_codegen::ir::{Phase, Told, Value};
+use hexagen_codegen::spec::HallCapture;
+use hexagen_reference::Stop;
+use hexagen_reference::verify::Subject;
+use serde::Deserialize;
+use std::io::{Read, Write};
+
+/// Bits of a set-point's fraction.
+const FRACTION: f64 = 65_536.0;
+
+/// One period of a log, a row of CSV: what the program passed to the drive. An empty set-point leaves the
+/// last one.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogRow {
+    /// ADC count of the first sensed phase.
+    pub adc_1: u16,
+    /// Of the second.
+    pub adc_2: u16,
+    /// Of the third, with `sensed_phases: abc` only.
+    pub adc_3: Option<u16>,
+    /// Hall code, Ha in bit 2.
+    pub hall: u8,
+    /// Ticks since the last edge, with an edge timer only.
+    pub ticks: Option<u16>,
+    /// Current set-point, ampere.
+    pub current_a: Option<f64>,
+    /// Torque set-point, newton metres.
+    pub torque_nm: Option<f64>,
+    /// Speed set-point, rpm.
+    pub speed_rpm: Option<f64>,
+    /// ADC count of the bus voltage.
+    pub bus: Option<u16>,
+    /// A call before the step: `calibrate`, `precharge`, `reset`, `coast`, `brake` or `resume`.
+    pub call: Option<String>,
+}
+
+/// What is wrong with a log, with its line; or why a result cannot be written.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct LogError(String);
+
+/// Rows of a log that were replayed, and what became of the drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replayed {
+    /// Periods.
+    pub periods: usize,
+    /// The first period with a fault, from 0, and its fault.
+    pub fault: Option<(usize, hexagen::Fault)>,
+}
+
+/// Replays a log from the drive's initial state, and writes one row of CSV per period.
+///
+/// # Errors
+/// A row that the drive cannot take, by its line; a writer's error.
+pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Replayed, LogError> {
+    let mut writer = csv::Writer::from_writer(out);
+    let view = View::of(drive);
+    writer.write_record(view.header()).map_err(written)?;
+    let mut subject = drive.interpreted();
+    let mut replayed = Replayed {
+        periods: 0,
+        fault: None,
+    };
+    for (period, row) in csv::Reader::from_reader(log).deserialize().enumerate() {
+        let row: LogRow = row.map_err(|error| LogError(error.to_string()))?;
+        // The header is line 1.
+        let at = |what: String| LogError(format!("line {}: {what}", period + 2));
+        let sample = sample(drive, &row).map_err(at)?;
+        give(&mut subject, &row).map_err(at)?;
+        let legs = subject.step(&sample);
+        let row = view.row(period, &subject, legs);
+        writer.write_record(row).map_err(written)?;
+        let fault = subject.fault().map(|fault| (period, fault));
+        replayed.fault = replayed.fault.or(fault);
+        replayed.periods += 1;
+    }
+    writer
+        .flush()
+        .map_err(|error| LogError(error.to_string()))?;
+    Ok(replayed)
+}
+
+fn written(error: csv::Error) -> LogError {
+    LogError(error.to_string())
+}
+
+/// The sample of a row.
+fn sample(drive: &Prepared, row: &LogRow) -> Result<Sample, String> {
+    let inverter = &drive.spec.inverter;
+    let most = inverter.adc_max();
+    let counts = [Some(row.adc_1), Some(row.adc_2), row.adc_3];
+    for (count, name) in counts.iter().flatten().zip(["adc_1", "adc_2", "adc_3"]) {
+        if u32::from(*count) > most {
+            return Err(format!(
+                "`{name}`: {count} is above {most}, the largest count of {} bits",
+                inverter.adc_bits
+            ));
+        }
+    }
+    if row.hall > 7 {
+        return Err(format!(
+            "`hall`: {} is no code of three sensors; give 0 to 7",
+            row.hall
+        ));
+    }
+    let mut sample = Sample::with_hall([row.adc_1, row.adc_2], row.hall);
+    let phases = inverter.sensed_phases.phases().len();
+    match (phases, row.adc_3) {
+        (3, Some(count)) => sample = sample.third_current(count),
+        (3, None) => {
+            return Err("`adc_3` is missing: the drive has three current sensors".to_owned());
+        }
+        (_, Some(_)) => {
+            return Err("`adc_3`: the drive has two current sensors; leave it out".to_owned());
+        }
+        (_, None) => {}
+    }
+    match (inverter.hall_capture, row.ticks) {
+        (HallCapture::Timer { .. }, Some(ticks)) => sample = sample.hall_ticks(ticks),
+        (HallCapture::Timer { .. }, None) => {
+            return Err("`ticks` is missing: the drive has an edge timer".to_owned());
+        }
+        (HallCapture::Sampled, Some(_)) => {
+            return Err("`ticks`: the drive has no edge timer; leave it out".to_owned());
+        }
+        (HallCapture::Sampled, None) => {}
+    }
+    Ok(sample)
+}
+
+/// Set-points and calls of a row.
+fn give(drive: &mut Interpreted<'_>, row: &LogRow) -> Result<(), String> {
+    let bits = |value: f64| (value * FRACTION).round() as i32;
+    if let Some(counts) = row.bus {
+        drive.set_bus(counts);
+    }
+    if let Some(current) = row.current_a {
+        drive.set_current(bits(current));
+    }
+    if let Some(torque) = row.torque_nm {
+        drive.set_torque(bits(torque));
+    }
+    if let Some(speed) = row.speed_rpm {
+        drive.set_speed(bits(speed));
+    }
+    match row.call.as_deref().unwrap_or_default() {
+        "" => {}
+        "calibrate" => drive.calibrate(),
+        "precharge" => drive.precharge(),
+        "reset" => drive.reset(),
+        "coast" => drive.stop(Stop::Coast),
+        "brake" => drive.stop(Stop::Brake),
+        "resume" => drive.stop(Stop::Resume),
+        other => {
+            return Err(format!(
+                "`call`: {other} is none of calibrate, precharge, reset, coast, brake and resume"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What is shown of a drive's period.
+struct View<'g> {
+    t_s: f64,
+    timer_period: f64,
+    /// Signals in SI units, by name.
+    signals: Vec<(&'static str, Value, Unit)>,
+    /// Every named word of the step.
+    words: Vec<(&'g str, Value)>,
+}
+
+impl<'g> View<'g> {
+    fn of(drive: &'g Prepared) -> Self {
+        let (step, units) = (
+            &drive.generated.graph.program().step,
+            &drive.generated.interface.units,
+        );
+        let named = |value: &Value| !step.node(*value).name.is_empty();
+        let words: Vec<(&str, Value)> = (step.values().filter(named))
+            .map(|value| (step.node(value).name.as_str(), value))
+            .collect();
+        let word = |name: &str| words.iter().find(|(own, _)| *own == name);
+        let currents = [("i_a_ampere", "i_a"), ("i_b_ampere", "i_b")]
+            .map(|(name, own)| word(own).map(|(_, value)| (name, *value, units.ampere)));
+        let told = [
+            ("e_a_volt", Told::Emf(Phase::A), units.volt),
+            ("e_b_volt", Told::Emf(Phase::B), units.volt),
+            ("speed_rpm", Told::Speed, units.rpm),
+        ]
+        .map(|(name, told, unit)| step.told(told).map(|value| (name, value, unit)));
+        Self {
+            t_s: drive.spec.inverter.t_s,
+            timer_period: f64::from(drive.spec.inverter.timer_period),
+            signals: currents.into_iter().chain(told).flatten().collect(),
+            words,
+        }
+    }
+
+    fn header(&self) -> Vec<&str> {
+        let fixed = [
+            "period", "time_s", "mode", "fault", "duty_a", "duty_b", "duty_c",
+        ];
+        let signals = self.signals.iter().map(|(name, ..)| *name);
+        let words = self.words.iter().map(|(name, _)| *name);
+        fixed.into_iter().chain(signals).chain(words).collect()
+    }
+
+    fn row(&self, period: usize, drive: &Interpreted<'_>, legs: Legs) -> Vec<String> {
+        let status = drive.supervisor().status();
+        let fault = status
+            .fault
+            .map_or(String::new(), |fault| format!("{fault:?}"));
+        let mut row = vec![
+            period.to_string(),
+            format!("{:.9}", period as f64 * self.t_s),
+            format!("{:?}", status.mode),
+            fault,
+        ];
+        // An off leg has no duty.
+        row.extend(legs.on().map(|on| {
+            on.map_or(String::new(), |on| {
+                format!("{:.6}", f64::from(on) / self.timer_period)
+            })
+        }));
+        // Without control the law computes its tracking alone.
+        let runs = matches!(status.mode, Mode::Run | Mode::Brake);
+        let word = |value: Value| drive.word(value).filter(|_| runs);
+        row.extend(self.signals.iter().map(|(_, value, unit)| {
+            word(*value).map_or(String::new(), |word| {
+                let of_one = f64::from(unit.factor) / f64::from(unit.shift).exp2() / FRACTION;
+                format!("{:.6}", of_one * word as f64)
+            })
+        }));
+        row.extend(
+            self.words
+                .iter()
+                .map(|(_, value)| word(*value).map_or(String::new(), |word| word.to_string())),
+        );
+        row
+    }
+}
