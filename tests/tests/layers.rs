@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 /// Modules of the generator, each with its allowed imports besides itself.
-const IMPORTS: [(&str, &[&str]); 15] = [
+const IMPORTS: [(&str, &[&str]); 16] = [
     ("at_once", &[]),
     ("derive", &[]),
     ("stopwatch", &[]),
@@ -51,11 +51,13 @@ const IMPORTS: [(&str, &[&str]); 15] = [
     ),
     ("emit", &["at_once", "diagnostics", "interface", "ir"]),
     ("builder", &["diagnostics", "emit", "pipeline", "spec"]),
+    ("field_items", &["diagnostics", "spec"]),
     (
         "expand",
         &[
             "diagnostics",
             "emit",
+            "field_items",
             "interface",
             "ir",
             "pipeline",

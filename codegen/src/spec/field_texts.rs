@@ -87,7 +87,7 @@ fn option_text(of: &str, rule: &Rule) -> FieldText {
 }
 
 fn paragraphs<const N: usize>(paragraphs: [String; N]) -> String {
-    let mut paragraphs = paragraphs.to_vec();
+    let mut paragraphs = Vec::from(paragraphs);
     paragraphs.retain(|text| !text.is_empty());
     paragraphs.join("\n\n")
 }

@@ -4,7 +4,9 @@ use crate::step::{Step, step};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The newest version that Rust 1.95 builds, with whose macro server it speaks.
+/// The newest version that Rust 1.95 builds, with whose macro server it speaks. It refuses servers of
+/// compilers with a newer protocol; the session then fails on the first field, and a newer version
+/// is due.
 const VERSION: &str = "=0.0.348";
 
 /// Where it is installed, in the repository.
