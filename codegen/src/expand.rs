@@ -1,8 +1,8 @@
 //! Expansion of the macros: tokens in, tokens out, errors as `compile_error!`, warnings as compiler
 //! warnings.
 //!
-//! Macros write constants by value, which compiles faster; files by name. They differ in nothing
-//! else.
+//! Macros write constants by value, which compiles faster; files by name. Macros also refer to what
+//! documents the fields, for editors. They differ in nothing else.
 //!
 //! On errors the type is emitted as an empty shape with every method and constant, so that the
 //! compiler reports the errors of the specification only.
@@ -10,6 +10,7 @@
 use crate::diagnostics::{Anchors, Diagnostic, Diagnostics};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, write_rust};
+use crate::field_items::references;
 use crate::interface::Interface;
 use crate::pipeline::{Generated, generate, warnings};
 use crate::spec::ast::Value;
@@ -29,6 +30,7 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
     let surface = surface(&input);
     let (mut files, anchors) = (vec![], input.anchors());
     let generated = generate_input(&input, root, &mut files);
+    let fields = references(&input.ast, &surface.attributes);
     let tracking = files.iter().map(|file| track(file));
     match generated {
         Ok((Generated { graph, interface }, warnings)) => {
@@ -41,12 +43,12 @@ pub fn expand_controller(tokens: TokenStream, root: &Path) -> TokenStream {
             let warnings = warnings
                 .iter()
                 .map(|warning| warning.to_compile_warning(&anchors));
-            quote!(#code #(#warnings)* #(#tracking)*)
+            quote!(#code #fields #(#warnings)* #(#tracking)*)
         }
         Err(errors) => {
             let errors = errors.to_compile_errors(&anchors);
             let shape = empty_shape(&input.ast, &surface);
-            quote!(#errors #shape #(#tracking)*)
+            quote!(#errors #shape #fields #(#tracking)*)
         }
     }
 }
@@ -89,11 +91,13 @@ fn surface(input: &MacroInput) -> Surface {
         .attributes
         .iter()
         .partition(|attribute| attribute.path().is_ident("doc"));
+    // What follows is a paragraph of its own.
+    let end = (!docs.is_empty()).then(|| quote!(#[doc = ""]));
     Surface {
         name: input.name.clone(),
         visibility: input.visibility.to_token_stream(),
         attributes: quote!(#(#others)*),
-        type_attributes: quote!(#(#docs)*),
+        type_attributes: quote!(#(#docs)* #end),
     }
 }
 
@@ -155,7 +159,7 @@ fn empty_shape(ast: &SpecAst, surface: &Surface) -> TokenStream {
 
 #[cfg(test)]
 mod tests {
-    use super::{expand_controller, expand_verify};
+    use super::{expand_controller, expand_verify, parse_macro, references};
     use crate::emit::rust::format_rust;
     use crate::{Builder, pipeline};
     use proc_macro2::{Group, TokenStream, TokenTree};
@@ -227,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn macro_and_build_script_differ_in_how_constants_are_written_alone() {
+    fn macro_and_build_script_differ_in_constants_and_references_to_fields_alone() {
         let folder = std::env::temp_dir().join(format!("hexagen-same-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a temporary folder");
         std::fs::write(folder.join("hub.toml"), include_str!("example.toml"))
@@ -242,10 +246,12 @@ mod tests {
             .expect("the example generates");
         let file = std::fs::read_to_string(&written[0].files[0]).expect("the file is there");
         std::fs::remove_dir_all(&folder).expect("the folder is ours");
-        assert_eq!(
-            with_constants_by_value(&file),
-            expanded(&quote!(48 V), &quote!(emf: model, advance: 2))
-        );
+        let options = quote!(emf: model, advance: 2);
+        // What editors show for the fields of a macro call; no field is in the file.
+        let call = parse_macro(hub(&quote!(48 V), &options)).expect("parses");
+        let fields = references(&call.ast, &TokenStream::new());
+        let file = with_constants_by_value(&file) + "\n" + &format_rust(&fields);
+        assert_eq!(file, expanded(&quote!(48 V), &options));
     }
 
     #[test]

@@ -43,7 +43,9 @@ mod signals;
 #[cfg_attr(doc, doc = include_str!("specification/fields.md"))]
 #[cfg_attr(doc, doc = include_str!("specification/options.md"))]
 #[cfg_attr(doc, doc = include_str!("specification/units.md"))]
-pub mod specification {}
+pub mod specification {
+    hexagen_macros::specification_fields!();
+}
 mod status;
 mod supervisor;
 mod trip;

@@ -37,6 +37,13 @@ pub fn verify(tokens: TokenStream) -> TokenStream {
     hexagen_codegen::expand_verify(tokens.into()).into()
 }
 
+/// Constants that document the fields of a specification, for editors. Used by the crate `hexagen`.
+#[doc(hidden)]
+#[proc_macro]
+pub fn specification_fields(_: TokenStream) -> TokenStream {
+    hexagen_codegen::expand_fields().into()
+}
+
 /// Implements `hexagen::State` for a structure of words: names, initial values and access by
 /// number. Used by emitted code. The initial value is 0 or the number of `#[initial(…)]`.
 #[proc_macro_derive(State, attributes(initial))]

@@ -7,13 +7,13 @@ use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
 use crate::blocks::Scale;
 use crate::design::Envelope;
-use crate::diagnostics::{engineering, frequency, rpm};
+use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
     Interface, Limits, OptionEntry, PublicConstant, ResidualWatch, SensedPhases, Sensor, Sensors,
     ThirdSensor, Unit, Units,
 };
 use crate::scaling::Scaled;
-use crate::spec::{self, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
+use crate::spec::{self, CurrentSensing, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -193,6 +193,7 @@ fn motor_and_inverter(spec: &Spec) -> Vec<String> {
             engineering(inverter.trip_current, "A"),
         ),
     ];
+    lines.push(current_sensors(spec));
     if inverter.pwm_per_control > 1 {
         lines.push(format!(
             "Control at {} (period {}): each command is held for {} periods of the PWM.",
@@ -202,6 +203,27 @@ fn motor_and_inverter(spec: &Spec) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Where the phase currents are measured, and what that leaves of the bus.
+fn current_sensors(spec: &Spec) -> String {
+    let inverter = &spec.inverter;
+    let place = match inverter.current_sensing {
+        CurrentSensing::InPhase => "in the phases",
+        CurrentSensing::LowSide(_) => "in the low legs of",
+    };
+    let phases = inverter.sensed_phases.phases().iter();
+    let phases: Vec<&str> = phases.map(|phase| ["a", "b", "c"][*phase]).collect();
+    let sensors = format!("Current sensors: {place} {}", phases.join(", "));
+    let share = spec.reach_share();
+    if share >= 1.0 {
+        return format!("{sensors}.");
+    }
+    format!(
+        "{sensors}; legs that must be low for a while reach {} between them, {} of the bus.",
+        engineering(inverter.v_bus * share, "V"),
+        percent(share)
+    )
 }
 
 /// Documentation of the speed regulator.

@@ -64,6 +64,7 @@ impl SpecAst {
         whole.overlay(self.inverter.clone());
         whole.location = location.or_else(|| Some(board.name.location.clone()));
         errors.extend(outside_of_board(&whole, &file.inverter));
+        errors.extend(sensors_not_there(&whole, &file.inverter));
         for (setting, wanted, fields) in OF_SETTINGS {
             let is_set =
                 |field: &Field| matches!(&field.value, Value::Word(word) if word == wanted);
@@ -76,6 +77,30 @@ impl SpecAst {
             }
         }
         (whole, errors)
+    }
+}
+
+/// Current sensors that the board does not have: three of two, or sensors in the phases of a board with some
+/// in the low legs. Which two phases have one is a question of names.
+fn sensors_not_there(whole: &Section, board: &Section) -> Option<Diagnostic> {
+    const ABSENT: [(&str, &str, &[&str]); 2] = [
+        ("sensed_phases", "abc", &["ab", "bc", "ca"]),
+        ("current_sensing", "in_phase", &["low_side"]),
+    ];
+    ABSENT.into_iter().find_map(|(name, asked, there)| {
+        let (given, own) = (whole.field(name)?, board.field(name)?);
+        let is_word =
+            |field: &Field, word: &str| matches!(&field.value, Value::Word(own) if own == word);
+        let is_absent = is_word(given, asked) && there.iter().any(|word| is_word(own, word));
+        is_absent.then(|| catalogue::sensors_not_there(&part(name, given), &part(name, own)))
+    })
+}
+
+fn part(field: &'static str, written: &Field) -> Part {
+    Part {
+        field,
+        given: written.value.to_string(),
+        location: written.location.clone(),
     }
 }
 
@@ -92,11 +117,6 @@ fn outside_of_board(whole: &Section, board: &Section) -> Option<Diagnostic> {
         (Some(least), _) if voltage < least => ("below", "bus_min", low),
         (_, Some(most)) if voltage > most => ("above", "bus_max", high),
         _ => return None,
-    };
-    let part = |field: &'static str, written: &Field| Part {
-        field,
-        given: written.value.to_string(),
-        location: written.location.clone(),
     };
     Some(catalogue::outside_of_board(
         &part("bus_voltage", given),

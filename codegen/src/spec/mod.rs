@@ -16,6 +16,7 @@ pub(crate) mod check;
 pub(crate) mod controller;
 mod emf_shape;
 mod field_rule;
+pub(crate) mod field_texts;
 pub(crate) mod health;
 mod load;
 mod macro_syntax;

@@ -37,7 +37,7 @@ fn shared() -> impl Iterator<Item = &'static Rule> {
 }
 
 /// The words with their meanings, or the range.
-fn values(rule: &Rule) -> String {
+pub(super) fn values(rule: &Rule) -> String {
     let listed = |words: &[Word]| {
         let words = words.iter().map(|word| match word.meaning {
             "" => format!("`{}`", word.word),
@@ -85,12 +85,20 @@ fn alternatives(words: &[Word]) -> String {
     words.join("|")
 }
 
-fn default(rule: &Rule) -> String {
+/// The default, in Markdown.
+pub(super) fn default(rule: &Rule) -> String {
     match rule.preset {
         Preset::Value(value) => format!("`{value}`"),
         Preset::Rule(text) => text.to_owned(),
         Preset::Checked => "needed".to_owned(),
     }
+}
+
+/// A phrase as a sentence begins.
+pub(super) fn sentence(phrase: &str) -> String {
+    let mut letters = phrase.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
 }
 
 fn plain(markdown: &str) -> String {
@@ -99,7 +107,7 @@ fn plain(markdown: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{KINDS, controller, default, values};
+    use super::{KINDS, controller, default, sentence, values};
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
     use crate::spec::rule::{Kind, Preset, Rule};
@@ -153,12 +161,6 @@ mod tests {
             text.push_str(&row);
         }
         text
-    }
-
-    fn sentence(phrase: &str) -> String {
-        let mut letters = phrase.chars();
-        let first = letters.next().map(|first| first.to_uppercase().to_string());
-        first.unwrap_or_default() + letters.as_str()
     }
 
     /// `INSTA_UPDATE=always` writes the page, as it does snapshots.

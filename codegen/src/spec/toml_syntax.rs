@@ -126,6 +126,9 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
             _ => ast.unknown_section(&at, name, &BOARD_SECTIONS),
         }
     }
+    if document.get("board").is_none() && document.get("inverter").is_none() {
+        ast.malformed.push(catalogue::not_a_board(&file.at(0)));
+    }
     Ok(BoardFile {
         description,
         inverter: ast.inverter,

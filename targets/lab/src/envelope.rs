@@ -19,6 +19,35 @@ pub fn envelope_on(spec: &Spec, plant: &PlantParams) -> Envelope {
     }
 }
 
+/// Greatest torques over speed: rpm and newton metres, ascending.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TorqueBounds {
+    /// With the drive's own reference, whole.
+    pub envelope: Vec<(f64, f64)>,
+    /// With any current profile within the peak of that reference.
+    pub any_profile: Vec<(f64, f64)>,
+}
+
+impl TorqueBounds {
+    /// Speeds of a curve over the rated one: from a fifth of it in steps of 2 %.
+    const SHARES: [u32; 2] = [10, 80];
+
+    /// Of an envelope, for speeds up to 160 % of the rated one in mechanical rad/s.
+    pub fn of(envelope: &Envelope, rated_speed: f64) -> Self {
+        let [first, last] = Self::SHARES;
+        let speeds = (first..=last).map(|share| 0.02 * f64::from(share) * rated_speed);
+        let curve = |torque: fn(&Envelope, f64) -> f64| {
+            let points = speeds.clone();
+            let points = points.map(|omega_m| (omega_m * 60.0 / TAU, torque(envelope, omega_m)));
+            points.collect()
+        };
+        Self {
+            envelope: curve(|envelope, omega_m| envelope.torque(omega_m)),
+            any_profile: curve(any_profile::torque),
+        }
+    }
+}
+
 /// Speeds that bound a motoring torque.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SpeedBounds {

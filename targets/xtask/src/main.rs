@@ -5,6 +5,7 @@
 //! is printed before it runs, so that it can be repeated by hand.
 
 mod compile_time;
+mod editors;
 mod packages;
 mod step;
 mod steps;
@@ -27,8 +28,8 @@ enum Command {
     /// Format, contents of packages, lints, documentation and all tests
     Test,
     /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
-    /// all products of options, `commands`, `programs`, and the proofs of all motors and of a
-    /// thousand random ones; Coq checks the shipped motors' once more
+    /// all products of options, `commands`, `programs`, `editors`, and the proofs of all motors and
+    /// of a thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
@@ -56,6 +57,9 @@ enum Command {
     Faults,
     /// Time that 100 controllers add to `cargo check`, and the share of each part of the generator
     CompileTime,
+    /// What rust-analyzer shows of a macro call: documentation, definitions, errors; builds it the
+    /// first time, which takes minutes
+    Editors,
     /// Refreshes every recorded expectation (snapshots, compiler messages) except that of
     /// `commands`, which changes only with an intended change of behaviour; read the diff
     /// afterwards
@@ -79,6 +83,7 @@ fn main() -> ExitCode {
         Command::Nightly { steps } => steps::checker()
             .and_then(|()| steps::browser())
             .and_then(|()| steps::certificate_checker())
+            .and_then(|()| editors::library_source())
             .and_then(|()| checks())
             .and_then(|()| steps::run(&steps::long_checks(steps)?)),
         Command::Packages => {
@@ -92,6 +97,7 @@ fn main() -> ExitCode {
         Command::Marks => steps::run(&[steps::bench("marks", &[])]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
         Command::CompileTime => compile_time::measure(step::root()),
+        Command::Editors => editors::library_source().and_then(|()| steps::run(&editors::steps())),
         Command::Accept => steps::checker()
             .and_then(|()| steps::browser())
             .and_then(|()| steps::run(&steps::refresh())),

@@ -1,7 +1,7 @@
 //! The steps of each task: cargo commands with their prerequisites.
 
-use crate::packages;
 use crate::step::{Step, root, step};
+use crate::{editors, packages};
 use std::env;
 use std::process::Command;
 use std::time::Instant;
@@ -215,6 +215,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         "full_product",
     ];
     let decisions = ["test", "--package", "hexagen-tests", "--test", "decisions"];
+    let [language_server, session] = editors::steps();
     Ok(vec![
         packages::pack(true)?,
         step("verification", &verify),
@@ -257,6 +258,8 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
         on_target("programs", &[]),
+        language_server,
+        session,
         step("proofs", &prove),
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),

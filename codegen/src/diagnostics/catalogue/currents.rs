@@ -5,6 +5,22 @@ use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, percent, significant,
 };
 
+/// The clause by which current sensors reach farther.
+fn widen(range: &Part) -> String {
+    match range.field {
+        "shunt" => "take a smaller `shunt` or `amplifier_gain`".to_owned(),
+        field => format!("widen `{field}`"),
+    }
+}
+
+/// The clause by which a count is a smaller current.
+fn narrow(range: &Part) -> String {
+    match range.field {
+        "shunt" => "take a larger `shunt` or `amplifier_gain`".to_owned(),
+        field => format!("narrow `{field}`"),
+    }
+}
+
 /// The current sensors do not reach the rated current; `range` in ampere.
 pub fn adc_range_too_small(range: &Part, rated: &Part, reach: f64) -> Diagnostic {
     with_parts(
@@ -12,11 +28,12 @@ pub fn adc_range_too_small(range: &Part, rated: &Part, reach: f64) -> Diagnostic
             Code::AdcRangeTooSmall,
             &range.location,
             format!(
-                "`{}`: {} measures up to {}, below the rated current of {}; widen the range or lower `rated_current`",
+                "`{}`: {} measures up to {}, below the rated current of {}; {} or lower `rated_current`",
                 range.field,
                 range.given,
                 engineering(at_most(reach), "A"),
                 rated.given,
+                widen(range),
             ),
         ),
         &[rated],
@@ -30,10 +47,10 @@ pub fn trip_above_adc_range(trip: &Part, range: &Part, reach: f64) -> Diagnostic
             Code::TripAboveAdcRange,
             &trip.location,
             format!(
-                "`trip_current`: {}, but the current sensors measure up to {} only; lower it or widen `{}`",
+                "`trip_current`: {}, but the current sensors measure up to {} only; lower it or {}",
                 trip.given,
                 engineering(at_most(reach), "A"),
-                range.field,
+                widen(range),
             ),
         ),
         &[range],
@@ -103,11 +120,11 @@ pub fn max_current_below_counts(
             Code::AdcTooCoarse,
             &max.location,
             format!(
-                "`max_current`: {} is {} ADC counts of {}, below the minimum of {least} (an error of 5 % by half a count); narrow `{}`, raise `adc_bits`, or give at least {}",
+                "`max_current`: {} is {} ADC counts of {}, below the minimum of {least} (an error of 5 % by half a count); {}, raise `adc_bits`, or give at least {}",
                 max.given,
                 significant(given / count),
                 engineering(count, "A"),
-                range.field,
+                narrow(range),
                 engineering(at_least(least * count), "A"),
             ),
         ),

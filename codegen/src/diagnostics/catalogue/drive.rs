@@ -19,6 +19,19 @@ pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
     with_parts(error, &[limit])
 }
 
+/// Current sensors that the board does not have.
+pub fn sensors_not_there(given: &Part, own: &Part) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::OutsideOfBoard,
+        &given.location,
+        format!(
+            "`{}`: {} asks for sensors that the board does not have: its `{}` is {}; remove the field, or describe a board with other sensors in a file of its own",
+            given.field, given.given, own.field, own.given
+        ),
+    );
+    with_parts(error, &[own])
+}
+
 /// The EMF constant is far from that of any motor; `phase`, `low`, `high`: peak phase EMF over
 /// mechanical speed, V s/rad.
 pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagnostic {

@@ -229,6 +229,16 @@ pub fn unknown_board(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
     )
 }
 
+/// A board file without any of a board's fields.
+pub fn not_a_board(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::MotorFile,
+        at,
+        "this is no board: it has neither `[board]` nor `[inverter]`; write the inverter's fields into `[inverter]`"
+            .to_owned(),
+    )
+}
+
 /// A board file cannot be read; `why` is the system's reason.
 pub fn unreadable_board_file(at: &Location, path: &str, why: &str) -> Diagnostic {
     Diagnostic::new(

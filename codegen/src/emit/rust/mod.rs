@@ -14,8 +14,7 @@ mod names;
 mod source;
 mod stage;
 mod tables;
-
-extern crate proc_macro;
+mod text_tokens;
 
 pub use format::{format_rust, readable_rust, rustfmt};
 
@@ -32,6 +31,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use source::{Source, quote};
 use std::collections::HashSet;
 use tables::emit_tables;
+use text_tokens::tokens_of;
 
 /// Name, visibility and attributes of the emitted type.
 #[derive(Clone, Debug)]
@@ -138,16 +138,8 @@ pub fn emit_rust(graph: &VerifiedGraph, interface: &Interface, surface: &Surface
 }
 
 fn tokens(code: &Source) -> TokenStream {
-    let code = code.as_str();
-    let tokens = if proc_macro::is_available() {
-        // In a macro the compiler parses the text: `proc_macro2` would parse it a second time,
-        // which takes longer than all the rest of the emission.
-        code.parse().map(proc_macro::TokenStream::into).ok()
-    } else {
-        code.parse().ok()
-    };
     // Templates are tokens; their variables are numbers, names and literals.
-    tokens.unwrap_or_else(|| {
+    tokens_of(code.as_str()).unwrap_or_else(|| {
         quote::quote!(::core::compile_error!(
             "hexagen emitted invalid Rust: a bug of hexagen, please report it with the specification"
         );)

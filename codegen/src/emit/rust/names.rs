@@ -97,15 +97,21 @@ pub(super) fn raw_text(text: &str) -> Source {
     Source::of(format!("r{hashes}\"{text}\"{hashes}"))
 }
 
-/// Documentation lines of an item.
+/// Documentation lines of an item, as attributes: from comments that a macro emits as text, the
+/// macro server of rust-analyzer makes lines that begin with `/ `.
 pub(super) fn docs<T: AsRef<str>>(lines: &[T]) -> Source {
-    Source::of(comments("///", COLUMNS, lines))
+    let comments = comments(SIGN, COLUMNS, lines);
+    let lines = comments.lines().map(|line| &line[SIGN.len()..]);
+    quote!(#(#[doc = #lines])*)
 }
 
 /// One documentation line of an item.
 pub(super) fn doc(line: &str) -> Source {
     docs(&[line])
 }
+
+/// Begin of a line of documentation where people read it.
+const SIGN: &str = "///";
 
 /// Columns of documentation: 100 with two levels of indentation.
 const COLUMNS: usize = 92;

@@ -4,7 +4,7 @@ use super::inverter::Inverter;
 use super::motor::Motor;
 use super::sensing::Sensing;
 use super::{currents, relations};
-use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
+use crate::diagnostics::{Collector, at_least, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, CurrentSum, HallCapture, InverterSpec, SensedPhases};
@@ -81,7 +81,7 @@ pub(super) fn inverter(
         other_sensors: others.to_vec(),
         sensed_phases: inverter.sensing.phases,
         current_sensing: inverter.sensing.place?,
-        current_sum: current_sum(&inverter.sensing, (trip_current, adc.gain)),
+        current_sum: current_sum(reader, &inverter.sensing, (trip_current, adc.gain), errors),
         minimum_low_time: inverter.sensing.minimum_low_time,
         offset_tolerance: adc.offset_tolerance,
         trip_current,
@@ -107,8 +107,33 @@ const SUM_TOLERANCE: f64 = 0.1;
 /// Default of the samples in a row with a larger sum that are a fault.
 const SUM_SAMPLES: u32 = 20;
 
+/// Least tolerance of a sum of three currents, ADC counts: each is off by up to half a count.
+const LEAST_SUM: f64 = 2.0;
+
 /// When three currents do not add up.
-fn current_sum(sensing: &Sensing, (trip_current, gain): (f64, f64)) -> Option<CurrentSum> {
+fn current_sum(
+    reader: &Reader,
+    sensing: &Sensing,
+    (trip_current, gain): (f64, f64),
+    errors: &mut Collector,
+) -> Option<CurrentSum> {
+    const TOLERANCE: &str = "current_sum_tolerance";
+    if let Some(tolerance) = sensing.sum_tolerance {
+        let part = reader.part(TOLERANCE, String::new);
+        let least = LEAST_SUM * gain;
+        if tolerance < least * (1.0 - 1e-9) || tolerance > trip_current * (1.0 + 1e-9) {
+            errors.push(catalogue::out_of_limits(
+                &part.location,
+                TOLERANCE,
+                &part.given,
+                &format!("{}, two ADC counts,", engineering(at_least(least), "A")),
+                &format!(
+                    "{}, the trip level",
+                    engineering(at_most(trip_current), "A")
+                ),
+            ));
+        }
+    }
     let samples = sensing.sum_samples.unwrap_or(SUM_SAMPLES);
     let default = (SUM_TOLERANCE * trip_current / gain).ceil() * gain;
     let is_watched = sensing.phases == SensedPhases::Abc && samples > 0;

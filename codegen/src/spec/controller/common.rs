@@ -206,7 +206,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
 pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
     Row::of(
         rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
-            .by_default("0.5 A, at most a quarter of `rated_current`")
+            .by_default("0.5 A, at most a quarter of `rated_current`, at least one ADC count")
             .about("Outgoing phase current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
         |options| Some(number(options.commutation_threshold)),
     ),
@@ -623,21 +623,21 @@ fn read_word_length(reader: &Reader, errors: &mut Collector) -> (u32, bool) {
     (reader.integer(errors, "word").unwrap_or(32), false)
 }
 
-/// 0.5 A by default; a quarter of the rated current where that is less.
+/// 0.5 A by default; a quarter of the rated current where that is less, an ADC count where that is more.
 fn read_threshold(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -> Option<f64> {
     let given = reader.plain_quantity(errors, "commutation_threshold");
     if reader.field("commutation_threshold").is_some() && given.is_none() {
         return None;
     }
     let (rated, rated_part) = drive.rated_current.as_ref()?;
-    let threshold = given.map_or(COMMUTATION_THRESHOLD.min(rated / 4.0), |given| given.si);
+    let least = drive.adc_gain.unwrap_or(0.0);
+    let default = COMMUTATION_THRESHOLD.min(rated / 4.0).max(least);
+    let threshold = given.map_or(default, |given| given.si);
     let part = reader.part("commutation_threshold", || engineering(threshold, "A"));
     if threshold >= *rated {
         errors.push(catalogue::threshold_above_rated(&part, rated_part));
-    } else if let Some(count) = drive.adc_gain
-        && threshold < count
-    {
-        errors.push(catalogue::threshold_below_count(&part, count));
+    } else if threshold < least {
+        errors.push(catalogue::threshold_below_count(&part, least));
     }
     Some(threshold)
 }

@@ -146,6 +146,36 @@ fn a_bus_that_is_not_the_board_s_is_refused_with_both_places() {
 }
 
 #[test]
+fn sensors_that_the_board_does_not_have_are_refused() {
+    const LOW_SIDE: &str = "current_sensing = \"low_side\"\nsensed_phases = \"bc\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"\n";
+    let folder = Folder::new("sensors", MOTOR, &format!("{BOARD}{LOW_SIDE}"));
+    let told = |inverter: &str| {
+        let call = format!(
+            "Rear {{ motor: \"motors/hub.toml\", board: \"boards/mine.toml\", inverter: {{ {inverter} }}, controller: pdcc }}"
+        );
+        folder.check(&call).0.err().unwrap_or_default()
+    };
+    assert_eq!(told("sensed_phases: ab"), "");
+    for (field, own) in [
+        ("sensed_phases: abc", "bc"),
+        ("current_sensing: in_phase", "low_side"),
+    ] {
+        let text = told(field);
+        let name = field.split(':').next().expect("a name");
+        assert!(text.contains("error[HX0330]"), "{text}");
+        assert!(text.contains(&format!("its `{name}` is {own}")), "{text}");
+    }
+}
+
+#[test]
+fn an_empty_file_is_no_board() {
+    let folder = Folder::new("empty", MOTOR, "");
+    let call = r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml" }"#;
+    let text = folder.check(call).0.expect_err("is empty");
+    assert!(text.contains("this is no board"), "{text}");
+}
+
+#[test]
 fn what_a_board_has_and_the_drive_does_without_is_no_error() {
     let folder = Folder::new("measured", MOTOR, BOARD);
     let call = |bus: &str| {

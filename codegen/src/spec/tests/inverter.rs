@@ -90,6 +90,14 @@ fn the_real_frequency_is_within_half_a_percent() {
 }
 
 #[test]
+fn a_default_threshold_is_at_least_one_count() {
+    let sensors = format!("{TIMER}adc_range = \"1200 A\"\n");
+    let (spec, _) = checked(&sensors, "kind = \"pdcc\"");
+    let threshold = spec.controller.common().commutation_threshold;
+    assert!((threshold - 1200.0 / 2048.0).abs() < 1e-9, "{threshold}");
+}
+
+#[test]
 fn edge_ticks_may_be_fractions_of_the_period() {
     for (f_pwm, clock, ticks) in [
         ("16 kHz", "1 MHz", 62.5),

@@ -7,7 +7,7 @@ use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
 use clap::Args;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{HallCapture, Reference, Spec};
+use hexagen_codegen::spec::{CurrentSensing, HallCapture, Reference, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::text::significant;
@@ -35,6 +35,9 @@ const SPEEDS: [f64; 2] = [0.2, 1.0];
 
 /// Ripple that is worth a word, peak to peak in percent of the mean.
 const RIPPLE: f64 = 25.0;
+
+/// Least torque at rated speed of a drive that works, percent.
+const LEAST_TORQUE: f64 = 50.0;
 
 /// Fewest ADC counts of the rated current for a smooth current.
 const COUNTS: f64 = 200.0;
@@ -162,6 +165,14 @@ impl Checked {
                 "does not work: it lacks torque even where the bus has room".to_owned(),
             );
         }
+        let at_rated = rated.torque_pct.unwrap_or(0.0);
+        if at_rated < LEAST_TORQUE {
+            let torque = significant(at_rated, 3);
+            return (
+                false,
+                format!("does not work: at rated speed the bus leaves {torque} % of the torque"),
+            );
+        }
         let mut buts = Vec::new();
         if lost(rated) {
             buts.push(format!(
@@ -171,7 +182,7 @@ impl Checked {
                 } else {
                     "the bus leaves"
                 },
-                significant(rated.torque_pct.unwrap_or(0.0), 3)
+                significant(at_rated, 3)
             ));
         }
         if slow.ripple_pp_pct.is_some_and(|ripple| ripple > RIPPLE) {
@@ -224,7 +235,11 @@ impl Checked {
                 self.controller, common.word
             ),
             format!(
-                "sensing     {} bits to {}: {} a count, rated current {} counts; trips at {}",
+                "sensing     {}, {} bits to {}: {} a count, rating {} counts; trips at {}",
+                match inverter.current_sensing {
+                    CurrentSensing::InPhase => "in the phases",
+                    CurrentSensing::LowSide(_) => "in the low legs",
+                },
                 inverter.adc_bits,
                 engineering(
                     inverter.adc_gain.abs() * f64::from(1_u32 << inverter.adc_bits) / 2.0,

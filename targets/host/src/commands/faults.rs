@@ -178,6 +178,7 @@ fn cause(cause: Cause) -> &'static str {
         Cause::OverVoltage => "over-voltage",
         Cause::UnderVoltage => "under-voltage",
         Cause::Residual => "residual",
+        Cause::CurrentSum => "current sum",
     }
 }
 

@@ -12,6 +12,7 @@ use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
 use hexagen_lab::engine::{EngineKind, Model, PlantOptions, SelectedMotor};
+use hexagen_lab::envelope::TorqueBounds;
 use hexagen_lab::plant::{PlantParams, Truth};
 use hexagen_lab::results::{
     Capture, DesignRow, ErrorsSeen, GeneratedTexts, Own, PAPER_MOTOR, Record, Results, Run,
@@ -390,6 +391,10 @@ pub fn data() -> Results {
             steps: 10_000_000,
             mismatches: 0,
         }),
+        bounds: TorqueBounds {
+            envelope: vec![(2000.0, 3.6), (2200.0, 3.29), (2400.0, 2.05)],
+            any_profile: vec![(2000.0, 3.6), (2400.0, 3.47), (2600.0, 3.26)],
+        },
         own: Some(Own {
             variant: 0,
             operations: 153,

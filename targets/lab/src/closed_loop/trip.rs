@@ -35,6 +35,8 @@ pub enum Cause {
     UnderVoltage,
     /// [`Fault::Residual`]
     Residual,
+    /// [`Fault::CurrentSum`]
+    CurrentSum,
 }
 
 impl Cause {
@@ -52,6 +54,7 @@ impl Cause {
             Fault::OverVoltage => Self::OverVoltage,
             Fault::UnderVoltage => Self::UnderVoltage,
             Fault::Residual => Self::Residual,
+            Fault::CurrentSum => Self::CurrentSum,
             other => unreachable!("unknown fault: {other:?}"),
         }
     }
@@ -68,6 +71,7 @@ impl fmt::Display for Cause {
             Self::OverVoltage => "the bus voltage was above `over_voltage`",
             Self::UnderVoltage => "the bus voltage was below `under_voltage`",
             Self::Residual => "the currents did not follow the voltages for the `residual_timeout`",
+            Self::CurrentSum => "three measured currents did not add up to zero",
         })
     }
 }
@@ -80,5 +84,20 @@ impl fmt::Display for Trip {
             "the drive tripped {:.2} ms after the start at {rpm:.0} rpm: {fault}",
             1e3 * time_s
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cause, Fault};
+
+    #[test]
+    fn every_fault_has_a_cause_of_its_own() {
+        let faults = (0..256).filter_map(Fault::from_number);
+        let causes: Vec<String> = faults.map(|fault| Cause::of(fault).to_string()).collect();
+        assert!(causes.len() >= 9, "{causes:?}");
+        for (index, cause) in causes.iter().enumerate() {
+            assert!(!causes[..index].contains(cause), "{cause}");
+        }
     }
 }

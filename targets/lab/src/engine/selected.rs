@@ -101,8 +101,16 @@ impl SelectedMotor {
             "minimum_low_time",
         ];
         let mut free = self.clone();
-        let fields = &mut free.ast.inverter.fields;
-        fields.retain(|field| !OF_WINDOW.contains(&field.name.as_str()));
+        let board = free
+            .ast
+            .board
+            .as_mut()
+            .and_then(|board| board.file.as_mut());
+        let sections = board.map(|file| &mut file.inverter).into_iter();
+        for section in sections.chain([&mut free.ast.inverter]) {
+            let is_kept = |name: &str| !OF_WINDOW.contains(&name);
+            section.fields.retain(|field| is_kept(&field.name));
+        }
         let lines = "[inverter]\ncurrent_sensing = \"in_phase\"\nminimum_low_time = \"0 s\"\n";
         let mut over = parse_toml(lines, "sensors in the phases")?;
         over.name = free.ast.name.clone();

@@ -6,10 +6,12 @@ use super::{
 };
 use crate::accuracy::{WORDS, at_speeds, one_step, with_word};
 use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor};
+use crate::envelope::TorqueBounds;
 use crate::robustness::robustness;
 use crate::text::significant;
 use crate::verification::{Checked, verify_drives};
 use crate::{LabError, Progress};
+use hexagen_codegen::design::Envelope;
 use hexagen_codegen::ir::PathCost;
 use hexagen_codegen::spec::{HallCapture, KINDS};
 use rayon::prelude::*;
@@ -130,6 +132,7 @@ impl Plan {
             held: held(self.is_expected),
             speeds_rpm: SPEEDS.map(|part| part * own.rated_rpm()).to_vec(),
             verification: None,
+            bounds: TorqueBounds::of(&Envelope::of(&own.spec), own.spec.motor.rated_speed),
             variants,
             own: (!self.is_expected).then(|| Own {
                 variant: 0,

@@ -7,6 +7,7 @@ use super::expected::Expected;
 use super::links::FieldLinks;
 use crate::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
 use crate::engine::Model;
+use crate::envelope::TorqueBounds;
 use crate::robustness::Robustness;
 use crate::stability::Stability;
 use hexagen_codegen::interface::FormatEntry;
@@ -37,6 +38,8 @@ pub struct Results {
     pub speeds_rpm: Vec<f64>,
     /// Result of the bit-for-bit check.
     pub verification: Option<Verification>,
+    /// Greatest torques over speed with the own controller's reference.
+    pub bounds: TorqueBounds,
     /// The variants in the table's order.
     pub variants: Vec<Variant>,
     /// The motor file's own controller; none where the table alone is wanted.

@@ -1,6 +1,7 @@
 //! Mean torque over speed, all variants.
 
 use crate::closed_loop::{Held, LimitOutcome, Side};
+use crate::envelope::TorqueBounds;
 use crate::report::plot::{Curve, TorqueSpeed, dash, torque_speed};
 use crate::report::{Block, Figure, Sign, Switch, variant};
 use crate::results::{Results, Variant};
@@ -33,6 +34,7 @@ pub fn blocks(data: &Results) -> Vec<Block> {
         unit: scale.unit,
         rated_rpm: data.motor.rated_speed * 60.0 / TAU,
         curves: curves.collect(),
+        bounds: bounds(&data.bounds, &scale),
         marks: &data.marks,
         held: data.held,
     });
@@ -50,7 +52,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     };
     let note = format!(
         "Dots, and speeds in the legend, are those at which mean torque {held} of the demand (or of the torque in the legend, for a limited \
-         set-point). Curves end where the search for this limit ended."
+         set-point). Curves end where the search for this limit ended. Dotted, from where they fall below the plot's top: the envelope, up to which the bus \
+         drives the whole current of the own controller's reference, and to its right the bound of any current within that reference's peak."
     );
     vec![
         Block::Switches(keys.collect()),
@@ -60,6 +63,21 @@ pub fn blocks(data: &Results) -> Vec<Block> {
             figures: vec![Figure::new(None, "", plot)],
         },
     ]
+}
+
+/// The bounds by name, in the plot's unit.
+fn bounds(bounds: &TorqueBounds, scale: &TorqueScale) -> Vec<(&'static str, Vec<(f64, f64)>)> {
+    let curves = [
+        ("envelope of the own drive", &bounds.envelope),
+        ("bound of any current", &bounds.any_profile),
+    ];
+    let scaled = |points: &Vec<(f64, f64)>| {
+        let points = points.iter();
+        points
+            .map(|&(rpm, torque)| (rpm, scale.per_nm * torque))
+            .collect()
+    };
+    curves.map(|(name, points)| (name, scaled(points))).to_vec()
 }
 
 fn limit_rpm(variant: &Variant) -> Option<f64> {

@@ -39,6 +39,8 @@ pub struct TorqueSpeed<'a> {
     pub rated_rpm: f64,
     /// The curves.
     pub curves: Vec<Curve>,
+    /// Bounds by name, in the curves' units.
+    pub bounds: Vec<(&'static str, Vec<Point>)>,
     /// Marks along the speed axis.
     pub marks: &'a [SpeedMark],
     /// Criterion for a mean torque that is held.
@@ -62,6 +64,9 @@ pub fn torque_speed(plan: &TorqueSpeed<'_>) -> Plot {
         plot.add(mark);
     }
     draw_demand(&mut plot, plan, &x_range);
+    for (name, points) in &plan.bounds {
+        draw_bound(&mut plot, name, points, &y_range);
+    }
     for curve in &plan.curves {
         draw_curve(&mut plot, curve, y_range.start);
     }
@@ -99,6 +104,14 @@ fn draw_demand(plot: &mut Plot, plan: &TorqueSpeed<'_>, x_range: &Range<f64>) {
         };
         plot.add(label(held[0], offset, percent, upright));
     }
+}
+
+/// The part of a bound within a range of torques.
+fn draw_bound(plot: &mut Plot, name: &str, points: &[Point], y_range: &Range<f64>) {
+    let below_top = |point: &&Point| point.1 <= y_range.end;
+    let points: Vec<Point> = points.iter().filter(below_top).copied().collect();
+    let stroke = Stroke::dashed(DEMAND, 1.5, (1.5, 3.0));
+    plot.series(Series::new(name, above(&points, y_range.start), stroke));
 }
 
 fn draw_curve(plot: &mut Plot, curve: &Curve, floor: f64) {

@@ -308,6 +308,7 @@ fn of_reading(data: &Reproduction, reading: Reading) -> [Block; 3] {
             })
             .collect(),
         marks: &SpeedMark::of_paper(),
+        bounds: Vec::new(),
         held: Held::AtLeast,
     });
     let keys = runs.map(|(method, run)| {
