@@ -9,27 +9,53 @@ use fixed::types::I16F16;
 
 /// Measurements, estimates and command of one control period, in SI units and rpm.
 ///
-/// Numbers saturate at +-32768.
+/// Numbers saturate at +-32768. Feature `defmt` formats them in whole mA, mV and rpm, rounded down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Signals {
     /// Currents of phases a, b, c into the motor at the beginning of the period, ampere.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub currents: [I16F16; 3],
     /// Mean terminal voltages of the command (with `delay: 1` in effect in the next period), volt
     /// against the negative rail at the nominal bus; `None` for a leg that is off.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub voltages: [Option<I16F16>; 3],
     /// Estimated EMF of phases a, b, c in the period in which the command takes effect (PHCC: in
     /// the current one), volt; `None` if the law estimates none.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub emf: Option<[I16F16; 3]>,
     /// Speed in rpm, forward positive, 0 while unknown; `None` if the law does not measure it.
-    #[cfg_attr(feature = "defmt", defmt(Debug2Format))]
     pub speed: Option<I16F16>,
     /// Sector 1 to 6.
     pub sector: u8,
+}
+
+/// Integers, because a logger may keep interrupts off for the length of a frame: decimal fractions
+/// would be converted in it.
+#[cfg(feature = "defmt")]
+impl defmt::Format for Signals {
+    fn format(&self, to: defmt::Formatter<'_>) {
+        let Self {
+            currents,
+            voltages,
+            emf,
+            speed,
+            sector,
+        } = self;
+        defmt::write!(
+            to,
+            "currents {} mA, voltages {} mV, emf {} mV, speed {} rpm, sector {=u8}",
+            currents.map(milli),
+            voltages.map(|voltage| voltage.map(milli)),
+            emf.map(|emf| emf.map(milli)),
+            speed.map(I16F16::to_num::<i32>),
+            *sector
+        );
+    }
+}
+
+/// Thousandths, rounded down.
+#[cfg(any(feature = "defmt", test))]
+fn milli(value: I16F16) -> i32 {
+    let thousandths = i64::from(value.to_bits()).wrapping_mul(1000);
+    thousandths.wrapping_shr(I16F16::FRAC_NBITS) as i32
 }
 
 impl Unit {
@@ -178,7 +204,7 @@ impl Port {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checked, Observation, PeriodWords, Port, Unit};
+    use super::{Checked, Observation, PeriodWords, Port, Unit, milli};
     use crate::arith::Word;
     use fixed::types::I16F16;
 
@@ -224,5 +250,13 @@ mod tests {
         };
         assert_eq!(huge.of(Word(i32::MAX)), I16F16::MAX);
         assert_eq!(huge.of(Word(i32::MIN)), I16F16::MIN);
+    }
+
+    #[test]
+    fn thousandths_are_rounded_down() {
+        let rounded = [1.5, -1.5, 0.0009, -0.0001].map(|value| milli(I16F16::from_num(value)));
+        assert_eq!(rounded, [1500, -1500, 0, -1]);
+        let ends = [I16F16::MAX, I16F16::MIN].map(milli);
+        assert_eq!(ends, [32_767_999, -32_768_000]);
     }
 }

@@ -437,7 +437,8 @@ const fn is_hall_code(hall: u8) -> bool {
 /// the last sector or of one beside it. So many samples in a row with such a code are bridged: the
 /// drive goes on as if the last code had stayed, at the speed that it knows, and counts them
 /// ([`Status::hall_glitches`]); one more is a fault. Without `hall_glitches` a code that no sensors
-/// give is a fault at once, and one that skips sectors is none.
+/// give is a fault at once, and one that skips sectors is none. A disturbed code of a sector beside the
+/// last is taken for an edge, and what it commutates may end in [`Fault::OverCurrent`].
 ///
 /// # What the supervisor cannot see
 ///

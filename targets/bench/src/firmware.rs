@@ -2,6 +2,7 @@
 
 use crate::BenchError;
 use crate::listing::{Listed, parse};
+use crate::log;
 use crate::targets::{Purpose, Target};
 use crate::toolchain::{Toolchain, find};
 use hexagen_firmware::wire::{Mode, Task};
@@ -14,8 +15,8 @@ use std::time::{Duration, Instant};
 /// The programs of every firmware with drives: in Rust, and emitted as C.
 pub const PROGRAMS: [&str; 2] = ["bench", "c99"];
 
-/// The programs of `targets/frameworks`.
-const FRAMEWORKS: [&str; 2] = ["hexagen-b-g431b-esc1", "hexagen-vesc-4"];
+/// The programs of `targets/frameworks`, and whether they report over defmt.
+const FRAMEWORKS: [(&str, bool); 2] = [("hexagen-b-g431b-esc1", true), ("hexagen-vesc-4", false)];
 
 /// Time-out of the emulator.
 const PATIENCE: Duration = Duration::from_mins(15);
@@ -66,16 +67,19 @@ impl Firmware {
     }
 
     /// Builds the programs of `targets/frameworks`, one by one: as members of one build they would
-    /// share the features of what both use.
+    /// share the features of what both use. Looks into what they log.
     ///
     /// # Errors
-    /// If a tool is missing, or a program does not build.
+    /// If a tool is missing, or a program does not build, logs nothing, or masks interrupts to log.
     pub fn build_frameworks() -> Result<(), BenchError> {
         let cortex = Self::find(Target::CortexM4)?;
-        for program in FRAMEWORKS {
+        for (program, is_logging) in FRAMEWORKS {
             let mut build = cortex.command("frameworks", "build");
             if !build.args(["--package", program]).status()?.success() {
                 return Err(BenchError::Build(program));
+            }
+            if is_logging {
+                log::check(&cortex.elf(program))?;
             }
         }
         Ok(())

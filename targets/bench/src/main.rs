@@ -9,6 +9,7 @@ mod commands;
 mod cost;
 mod firmware;
 mod listing;
+mod log;
 mod marks;
 mod pil;
 mod targets;

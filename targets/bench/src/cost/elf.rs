@@ -232,6 +232,11 @@ impl Instruction {
         is_pair.then(|| at.wrapping_add(upper & 0xffff_f000).wrapping_add(offset))
     }
 
+    /// Whether it keeps interrupts from a Cortex-M: `cpsid i`.
+    pub fn masks_interrupts(self) -> bool {
+        self.isa == Isa::Thumb && self.first == 0xb672
+    }
+
     /// Its kind.
     pub fn class(self) -> Class {
         match (self.isa, self.length()) {

@@ -3,7 +3,7 @@
 
 mod count;
 mod cycles;
-mod elf;
+pub mod elf;
 mod expected;
 mod goals;
 mod peers;

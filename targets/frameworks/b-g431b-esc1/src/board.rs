@@ -32,16 +32,22 @@ use embassy_stm32::timer::{Ch1, Ch2, Ch3};
 use embassy_stm32::triggers::TIM1_TRGO;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Config, Peripherals, bind_interrupts};
-use hexagen::{Legs, Sample};
-use hexagen_stm32::{LEAD, dead_time, outputs};
+use hexagen::{Control, Legs, Sample};
+use hexagen_stm32::{LEAD, outputs, specified_dead_time};
 
-/// From the timers' clock, the specification's `timer_clock`, to the Hall timer's.
+/// The timers' clock, the specification's `timer_clock`.
+const TIMER_HZ: u32 = 170_000_000;
+/// From the timers' clock to the Hall timer's.
 const HALL_PRESCALER: u16 = 170;
-const _: () = assert!(HubDrive::HALL_TIMER_HZ * HALL_PRESCALER as u32 == 170_000_000);
-/// 500 ns, the specification's `dead_time`.
-const DEAD_TIME: u8 = match dead_time(85) {
+const _: () = assert!(HubDrive::HALL_TIMER_HZ * HALL_PRESCALER as u32 == TIMER_HZ);
+const _: () = assert!(
+    2 * HubDrive::TIMER_PERIOD as u64 * 1_000_000_000 == HubDrive::T_S_NS as u64 * TIMER_HZ as u64,
+    "the specification has another `timer_clock`"
+);
+/// The specification's `dead_time`.
+const DEAD_TIME: u8 = match specified_dead_time(HubDrive::SPEC, TIMER_HZ) {
     Some(bits) => bits,
-    None => panic!("the timer has no such dead time"),
+    None => panic!("the specification states no dead time, or one that the timer cannot make"),
 };
 /// Where the comparators cut the outputs: 25 A above the mid-scale of the op-amps, at their inputs.
 /// The ADCs see 16 times as much, and both go by the same reference.
@@ -311,8 +317,15 @@ fn set_up_hall_timer() {
     timer.cr1().modify(|w| w.set_cen(true));
 }
 
-/// Lets the control interrupt in, above all others.
+/// Lets the control interrupt in, above all others. Out of reset all have one priority, and then
+/// the time driver's and the comparators' would delay it.
 pub fn let_interrupt_in() {
+    // SAFETY: nobody else sets priorities, and no critical section goes by them.
+    let controller = unsafe { cortex_m::Peripherals::steal() }.NVIC;
+    for priority in &controller.ipr {
+        // SAFETY: as above.
+        unsafe { priority.write(Priority::P1.into()) };
+    }
     interrupt::ADC1_2.set_priority(Priority::P0);
     // SAFETY: what the handler uses was handed over to it before.
     unsafe { interrupt::ADC1_2.enable() };

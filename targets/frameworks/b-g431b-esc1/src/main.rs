@@ -27,7 +27,7 @@ hexagen::controller! {
     pub HubDrive {
         motor: "../../motors/anaheim-bly172s.toml",
         board: "st-b-g431b-esc1",
-        inverter: { sensed_phases: ab, conversion_time: 0 us, max_current: 5 A },
+        inverter: { bus_voltage: 24.5 V, sensed_phases: ab, conversion_time: 0 us, max_current: 5 A },
         controller: pdcc,
     }
 }

@@ -42,6 +42,9 @@
 //! A break input clears `MOE`; `OSSI` with `OISx` = 0 then drives all six pins low.
 #![no_std]
 
+mod dead_time;
+
+pub use dead_time::{dead_time, specified_dead_time};
 use hexagen::{LegState, Legs};
 
 /// `CC1E`; those of channels 2 and 3 are four bits up each.
@@ -96,53 +99,5 @@ const fn enables(state: LegState) -> u32 {
     match state {
         LegState::Pulsed | LegState::Low => ENABLE | ENABLE_COMPLEMENTARY,
         LegState::Off => ENABLE,
-    }
-}
-
-/// The bits `DTG` of a dead time in timer clocks, rounded up to what the timer can do; none of one
-/// that is longer than 1008 clocks. The timer's `CKD` is 0 (RM0440, RM0090: `TIMx_BDTR`).
-///
-/// ```
-/// use hexagen_stm32::dead_time;
-///
-/// // 500 ns at 170 MHz: 85 clocks.
-/// assert_eq!(dead_time(85), Some(85));
-/// // 360 ns at 168 MHz: 61 clocks; 1 us: 168, in steps of two.
-/// assert_eq!((dead_time(61), dead_time(168)), (Some(61), Some(0x94)));
-/// assert_eq!(dead_time(1009), None);
-/// ```
-#[must_use]
-pub const fn dead_time(clocks: u16) -> Option<u8> {
-    Some(match clocks {
-        0..=127 => clocks as u8,
-        128..=254 => 0x80 | (clocks.div_ceil(2) - 64) as u8,
-        255..=504 => 0xc0 | (clocks.div_ceil(8) - 32) as u8,
-        505..=1008 => 0xe0 | (clocks.div_ceil(16) - 32) as u8,
-        _ => return None,
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::dead_time;
-
-    /// What the reference manuals say that the bits stand for.
-    fn clocks(bits: u8) -> u16 {
-        let bits = u16::from(bits);
-        match bits >> 5 {
-            0..=3 => bits,
-            4..=5 => 2 * (64 + (bits & 0x3f)),
-            6 => 8 * (32 + (bits & 0x1f)),
-            _ => 16 * (32 + (bits & 0x1f)),
-        }
-    }
-
-    #[test]
-    fn a_dead_time_is_the_shortest_that_is_not_below_the_wanted_one() {
-        for wanted in 0..=1008 {
-            let found = dead_time(wanted).map(clocks);
-            let shortest = (0..=255).map(clocks).filter(|&time| time >= wanted).min();
-            assert_eq!(found, shortest, "{wanted}");
-        }
     }
 }

@@ -12,18 +12,24 @@
 //! | control interrupt does not come | independent watchdog, 1 ms |
 
 use crate::HubDrive;
-use hexagen::{Legs, Sample};
-use hexagen_stm32::{LEAD, dead_time, outputs};
+use hexagen::{Control, Legs, Sample};
+use hexagen_stm32::{LEAD, outputs, specified_dead_time};
 use stm32f4xx_hal::gpio::{Input, Output, PA7, PB6, PB7, PC4, PC10, PC11, PC12, Pull};
 use stm32f4xx_hal::pac::{ADC1, ADC2, Peripherals, TIM1, TIM2, adc1};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Enable, Reset};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-/// 360 ns at 168 MHz, the specification's `dead_time`.
-const DEAD_TIME: u8 = match dead_time(61) {
+/// The clock of the core and of `TIM1`, the specification's `timer_clock`.
+const TIMER_HZ: u32 = 168_000_000;
+const _: () = assert!(
+    2 * HubDrive::TIMER_PERIOD as u64 * 1_000_000_000 == HubDrive::T_S_NS as u64 * TIMER_HZ as u64,
+    "the specification has another `timer_clock`"
+);
+/// The specification's `dead_time`.
+const DEAD_TIME: u8 = match specified_dead_time(HubDrive::SPEC, TIMER_HZ) {
     Some(bits) => bits,
-    None => panic!("the timer has no such dead time"),
+    None => panic!("the specification states no dead time, or one that the timer cannot make"),
 };
 
 /// What the control interrupt reads and writes.
@@ -55,7 +61,7 @@ impl Board {
     /// Sets everything up; nothing runs yet, and all gates are low.
     pub fn new(device: Peripherals) -> (Self, Lights) {
         let clocks = Config::hse(8.MHz())
-            .sysclk(168.MHz())
+            .sysclk(TIMER_HZ.Hz())
             .pclk1(42.MHz())
             .pclk2(84.MHz());
         let mut rcc = device.RCC.freeze(clocks);
@@ -175,7 +181,7 @@ impl Board {
         }
         self.enable.set_high();
         // The driver charges its supplies; it reports faults meanwhile.
-        cortex_m::asm::delay(168_000 * 20);
+        cortex_m::asm::delay(TIMER_HZ / 1_000 * 20);
         // Commands of the drive are OFF until it has calibrated.
         self.pwm.bdtr().modify(|_, w| w.moe().set_bit());
         self.watchdog.start(1.millis());
