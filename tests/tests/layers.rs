@@ -40,6 +40,7 @@ const IMPORTS: [(&str, &[&str]); 16] = [
         "pipeline",
         &[
             "at_once",
+            "design",
             "laws",
             "diagnostics",
             "interface",

@@ -42,7 +42,7 @@ impl TorqueBounds {
             points.collect()
         };
         Self {
-            envelope: curve(|limits, omega_m| Envelope::torque(limits, omega_m)),
+            envelope: curve(Envelope::torque),
             any_profile: curve(any_profile::torque),
         }
     }
