@@ -63,33 +63,33 @@ pub struct Replayed {
 pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Replayed, LogError> {
     let mut writer = csv::Writer::from_writer(out);
     let view = View::of(drive);
-    writer.write_record(view.header()).map_err(written)?;
+    writer.write_record(view.header())?;
     let mut subject = drive.interpreted();
     let mut replayed = Replayed {
         periods: 0,
         fault: None,
     };
     for (period, row) in csv::Reader::from_reader(log).deserialize().enumerate() {
-        let row: LogRow = row.map_err(|error| LogError(error.to_string()))?;
+        let row: LogRow = row?;
         // The header is line 1.
         let at = |what: String| LogError(format!("line {}: {what}", period + 2));
         let sample = sample(drive, &row).map_err(at)?;
         give(&mut subject, &row).map_err(at)?;
         let legs = subject.step(&sample);
         let row = view.row(period, &subject, legs);
-        writer.write_record(row).map_err(written)?;
+        writer.write_record(row)?;
         let fault = subject.fault().map(|fault| (period, fault));
         replayed.fault = replayed.fault.or(fault);
         replayed.periods += 1;
     }
-    writer
-        .flush()
-        .map_err(|error| LogError(error.to_string()))?;
+    writer.flush().map_err(csv::Error::from)?;
     Ok(replayed)
 }
 
-fn written(error: csv::Error) -> LogError {
-    LogError(error.to_string())
+impl From<csv::Error> for LogError {
+    fn from(error: csv::Error) -> Self {
+        Self(error.to_string())
+    }
 }
 
 /// The sample of a row.

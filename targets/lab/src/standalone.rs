@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 /// The macros that the runtime re-exports; not called by emitted code with expanded derives.
 pub const MACROS: &str = "#![no_std]\n#![allow(non_snake_case)]\n\
     #[macro_export] macro_rules! controller { () => {} }\n\
+    #[macro_export] macro_rules! specification_fields { () => {} }\n\
     #[macro_export] macro_rules! verify { () => {} }\n\
     #[macro_export] macro_rules! State { () => {} }\n";
 
