@@ -237,7 +237,8 @@ static hexagen_fault find_fault(const hexagen_supervisor *supervisor, const hexa
     if (!has_hall) {
         return HEXAGEN_FAULT_HALL;
     }
-    if (hexagen_is_over(limits, first, second)) {
+    /* Without offsets a count tells no current. */
+    if (supervisor->mode != HEXAGEN_MODE_CALIBRATE && hexagen_is_over(limits, first, second)) {
         return HEXAGEN_FAULT_OVER_CURRENT;
     }
     if (hexagen_is_sum_off(supervisor, limits)) {
@@ -275,6 +276,34 @@ static bool follows(uint32_t sector, uint32_t next)
 }
 
 /**
+ * Whether a sector lasts long enough for a short-circuited motor to take at most the largest current.
+ * A slow rotor stays so until two edges in one direction show another speed: one disturbed sample
+ * gives two edges, too, but there and back.
+ */
+static bool is_slow(const hexagen_supervisor *supervisor, const hexagen_limits *limits)
+{
+    return hexagen_max(supervisor->turn_age, supervisor->turn_interval) == limits->brake_periods;
+}
+
+/** Follows an edge of the rotor; whether it is the second in a row in one direction. */
+static bool follow_edge(
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, int32_t direction)
+{
+    const bool is_second = direction != 0 && direction == supervisor->turn_direction;
+    if (is_second) {
+        supervisor->turn_interval = supervisor->turn_age;
+        supervisor->turn_age = 0;
+    } else if (!is_slow(supervisor, limits)) {
+        supervisor->turn_interval = 0;
+        if (supervisor->turn_direction == 0 && direction != 0) {
+            supervisor->turn_age = 0;
+        }
+    }
+    supervisor->turn_direction = direction;
+    return is_second;
+}
+
+/**
  * Follows the rotor for a control period; whether it ends in an edge that is the second in a row in
  * one direction.
  */
@@ -285,10 +314,7 @@ static bool is_known(hexagen_supervisor *supervisor, const hexagen_limits *limit
     bool is_second = false;
     if (before != 0U && now != before) {
         const int32_t direction = follows(before, now) ? 1 : follows(now, before) ? -1 : 0;
-        is_second = direction != 0 && direction == supervisor->turn_direction;
-        supervisor->turn_direction = direction;
-        supervisor->turn_interval = supervisor->turn_age;
-        supervisor->turn_age = 0;
+        is_second = follow_edge(supervisor, limits, direction);
     }
     supervisor->turn_hall = hall;
     supervisor->turn_age = hexagen_min(supervisor->turn_age + 1, limits->brake_periods);
@@ -316,13 +342,12 @@ static hexagen_rested go_on_braking(
     if (supervisor->countdown != 0U) {
         return rested;
     }
-    /* A sector lasts long enough for a short-circuited motor to take at most the largest current. */
-    if (hexagen_max(supervisor->turn_age, supervisor->turn_interval) == limits->brake_periods) {
+    if (is_slow(supervisor, limits)) {
         rested.leg = HEXAGEN_LEG_LOW;
     } else {
         rested.is_controlled = true;
         rested.is_braking = true;
-        rested.against = supervisor->turn_direction;
+        rested.against = (supervisor->turn_interval == 0) ? 0 : supervisor->turn_direction;
     }
     return rested;
 }

@@ -554,8 +554,8 @@ typedef struct {
 /**
  * The supervisor of a drive: mode, first fault, offsets of the current ADCs.
  *
- * It trips on what samples show: a current above the trip level, a current ADC at an end of its
- * range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
+ * It trips on what samples show: a current above the trip level (but in calibration), a current ADC
+ * at an end of its range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
  * `set_bus` tells. It cannot see the following; where an option helps, it is named:
  *
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
@@ -609,10 +609,19 @@ typedef struct {
      * first.
      */
     uint16_t turn_hall;
-    /** Control periods since the last edge, and between the last two. */
+    /**
+     * Control periods since the last edge that is not one back over the edge before it: a sensor that
+     * chatters moves no rotor.
+     */
     int32_t turn_age;
+    /**
+     * Control periods between two edges, the last one of them the second in a row in its direction; 0
+     * if the last edge is not.
+     */
     int32_t turn_interval;
-    /** 1 forward, -1 backward; 0 before the first edge and behind one that skips sectors. */
+    /**
+     * Of the last edge, 1 forward, -1 backward; 0 before the first and behind one that skips sectors.
+     */
     int32_t turn_direction;
 } hexagen_supervisor;
 
@@ -930,7 +939,10 @@ static inline hexagen_period hexagen_period_of(hexagen_rested rested, hexagen_ch
  */
 bool hexagen_reset(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
-/** Starts calibration; ignored when tripped. */
+/**
+ * Starts calibration; ignored when tripped. No current is judged meanwhile: without offsets a count
+ * tells none, and a trip would turn off what is off already.
+ */
 void hexagen_calibrate(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
 /**
@@ -944,8 +956,9 @@ void hexagen_coast(hexagen_supervisor *supervisor);
 
 /**
  * Brakes until hexagen_resume: all lower switches on where the short-circuited motor takes no more
- * than the largest current, above that speed this current against the rotation; none until the
- * first Hall edge tells the direction. Ignored when tripped, calibrating and pre-charging.
+ * than the largest current, above that speed this current against the rotation; none until two
+ * Hall edges in one direction tell it. A rotor that stands stays shorted whatever one sensor does.
+ * Ignored when tripped, calibrating and pre-charging.
  */
 void hexagen_brake(hexagen_supervisor *supervisor);
 

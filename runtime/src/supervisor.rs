@@ -406,7 +406,8 @@ const fn is_hall_code(hall: u8) -> bool {
 /// follow each other:
 ///
 /// 1. Calibration: periods with all legs off, whose ADC counts are averaged. The motor must be at
-///    rest. An offset too far from its nominal value trips the drive.
+///    rest. An offset too far from its nominal value trips the drive. No current is judged meanwhile:
+///    without offsets a count tells none, and a trip would turn off what is off already.
 /// 2. Pre-charge, if specified: periods with all lower switches on, which charge the bootstrap
 ///    capacitors, and short-circuit a turning motor.
 /// 3. Start, where the law knows the EMF from the rotor's angle: periods with all legs off, until two
@@ -422,8 +423,9 @@ const fn is_hall_code(hall: u8) -> bool {
 /// [`coast`](Self::coast) turns all legs off on purpose, without a fault.
 /// [`brake`](Self::brake) slows the rotor down: below the speed at which the short-circuited motor
 /// takes the largest current (`max_current`), all lower switches are on; above it the drive controls
-/// that current against the rotation, which feeds the bus; until the first Hall edge tells the
-/// direction, no current. Both go on until [`resume`](Self::resume), a reset or a trip; the
+/// that current against the rotation, which feeds the bus; until two Hall edges in one direction
+/// tell it, no current. A rotor that stands stays shorted whatever one sensor does: a disturbed sample
+/// of the sector beside, or a sensor that chatters on its edge, goes there and back. Both go on until [`resume`](Self::resume), a reset or a trip; the
 /// set-point is 0 then. The sensors are watched as in control, but for a stall. A start that they
 /// interrupt goes on meanwhile: braking begins when it is over; if `resume` comes earlier, the rest of
 /// the start follows.
@@ -442,8 +444,8 @@ const fn is_hall_code(hall: u8) -> bool {
 ///
 /// # What the supervisor cannot see
 ///
-/// It trips on what samples show: a current above the trip level, a current ADC at an end of its
-/// range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
+/// It trips on what samples show: a current above the trip level (but in calibration), a current ADC
+/// at an end of its range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
 /// [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see the following; where an option helps, it
 /// is named:
 ///
@@ -493,11 +495,13 @@ pub struct Supervisor {
 struct Turn {
     /// Hall code of the last period; 0 before the first.
     hall: u8,
-    /// Control periods since the last edge.
+    /// Control periods since the last edge that is not one back over the edge before it: a sensor
+    /// that chatters moves no rotor.
     age: Word,
-    /// Control periods between the last two edges.
+    /// Control periods between two edges, the last one of them the second in a row in its direction;
+    /// 0 if the last edge is not.
     interval: Word,
-    /// 1 forward, -1 backward; 0 before the first edge and behind one that skips sectors.
+    /// Of the last edge, 1 forward, -1 backward; 0 before the first and behind one that skips sectors.
     direction: Word,
 }
 
@@ -524,9 +528,14 @@ impl Turn {
             Word(0)
         };
         let is_second = is_edge && direction != 0 && direction == self.direction;
-        if is_edge {
+        if is_second {
             self.interval = self.age;
             self.age = Word(0);
+        } else if is_edge && !self.is_slow(limits) {
+            self.interval = Word(0);
+            if self.direction == 0 && direction != 0 {
+                self.age = Word(0);
+            }
         }
         self.hall = hall;
         self.direction = direction;
@@ -535,9 +544,19 @@ impl Turn {
     }
 
     /// Whether a sector lasts long enough for a short-circuited motor to take no more than the
-    /// largest current.
+    /// largest current. A slow rotor stays so until two edges in one direction show another speed:
+    /// one disturbed sample gives two edges, too, but there and back.
     fn is_slow(&self, limits: &Limits) -> bool {
         self.age.max(self.interval) == limits.brake_periods
+    }
+
+    /// The direction of the last two edges, if it is the same one; else 0.
+    fn known_direction(&self) -> Word {
+        if self.interval == 0 {
+            Word(0)
+        } else {
+            self.direction
+        }
     }
 }
 
@@ -834,7 +853,7 @@ impl Supervisor {
             Some(Fault::AdcRange)
         } else if !is_sound && !is_bridged {
             Some(Fault::Hall)
-        } else if limits.is_over(i) {
+        } else if self.mode != Mode::Calibrate && limits.is_over(i) {
             Some(Fault::OverCurrent)
         } else if self.is_sum_off(sensors) {
             Some(Fault::CurrentSum)
@@ -925,7 +944,7 @@ impl Supervisor {
         } else if self.turn.is_slow(limits) {
             Rest::Legs(LegState::Low)
         } else {
-            Rest::Against(self.turn.direction)
+            Rest::Against(self.turn.known_direction())
         }
     }
 

@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 /// A supervisor of one drive.
 trait Supervised {
-    /// A period: the passed currents, or the number of the state of all legs if the drive rests.
-    fn period(&mut self, adc: [u16; 3], hall: u8, is_demanded: bool) -> ([i32; 2], Option<i32>);
+    /// A period.
+    fn period(&mut self, adc: [u16; 3], hall: u8, is_demanded: bool) -> Outcome;
     /// Follows the legs of a controlled period.
     fn follow(&mut self, legs: hexagen::Legs);
     /// A period begins behind a call of `set_bus` with this count.
@@ -25,6 +25,16 @@ trait Supervised {
     fn stop(&mut self, stop: Stop);
     fn words(&self) -> [i32; WORDS];
     fn set_words(&mut self, words: [i32; WORDS]);
+}
+
+/// What a period comes to.
+struct Outcome {
+    /// The currents for the law.
+    currents: [i32; 2],
+    /// The number of the state of all legs, if the drive rests.
+    leg: Option<i32>,
+    /// The direction that it brakes, if it brakes a fast rotor.
+    against: Option<i32>,
 }
 
 /// Words of a supervisor.
@@ -42,24 +52,24 @@ macro_rules! new {
                 [adc_a, adc_b, adc_c]: [u16; 3],
                 hall: u8,
                 is_demanded: bool,
-            ) -> ([i32; 2], Option<i32>) {
+            ) -> Outcome {
                 let Self(supervisor, limits, sensors) = self;
                 let sample = Sample::with_hall([adc_a, adc_b], hall).third_current(adc_c);
-                let (checked, leg) =
+                let (checked, rest) =
                     match supervisor.check(limits, sensors, &sample, || is_demanded) {
-                        Some(checked) => (checked, None),
-                        None => {
-                            let (checked, rest) = supervisor.rest(limits, sensors, &sample);
-                            (
-                                checked,
-                                match rest {
-                                    $module::Rest::Legs(leg) => Some(leg as i32),
-                                    $module::Rest::Control | $module::Rest::Against(_) => None,
-                                },
-                            )
-                        }
+                        Some(checked) => (checked, $module::Rest::Control),
+                        None => supervisor.rest(limits, sensors, &sample),
                     };
-                ([checked.i_a().0, checked.i_b().0], leg)
+                let (leg, against) = match rest {
+                    $module::Rest::Legs(leg) => (Some(leg as i32), None),
+                    $module::Rest::Control => (None, None),
+                    $module::Rest::Against(direction) => (None, Some(direction.0)),
+                };
+                Outcome {
+                    currents: [checked.i_a().0, checked.i_b().0],
+                    leg,
+                    against,
+                }
             }
             fn follow(&mut self, legs: hexagen::Legs) {
                 self.0.follow_command(&self.2, legs.on());
@@ -149,7 +159,7 @@ macro_rules! new {
     reason = "the runtime's own text, and what a fault leaves without use"
 )]
 mod planted {
-    use super::{Limits, New, Sensors, Stop, Supervised, WORDS};
+    use super::{Limits, New, Outcome, Sensors, Stop, Supervised, WORDS};
     use hexagen::{Command, LegState, arith};
     use sample::{Checked, Sample};
     use status::{Fault, Mode, Status};
@@ -352,7 +362,11 @@ impl Pair {
     /// A period of both.
     fn is_same(&mut self, sample: &hexagen::Sample) -> bool {
         let is_demanded = self.model.set_point_words()[0] != 0.0;
-        let (currents, leg) = self
+        let Outcome {
+            currents,
+            leg,
+            against,
+        } = self
             .supervisor
             .period(sample.adc(), sample.hall(), is_demanded);
         self.legs = self.model.step(sample);
@@ -361,7 +375,14 @@ impl Pair {
             self.supervisor.follow(self.legs);
         }
         let expected = (!self.model.trace().run).then(|| self.legs.state()[0] as i32);
+        // The model demands the largest torque against the direction, or none.
+        let demanded = self.model.set_point_words()[0];
+        let is_opposed = against.is_none_or(|direction| match direction {
+            0 => demanded == 0.0,
+            _ => demanded * f64::from(direction) < 0.0,
+        });
         leg == expected
+            && is_opposed
             && self.words.starts_with(&self.supervisor.words())
             && currents == self.currents.map(|place| self.words[place])
     }

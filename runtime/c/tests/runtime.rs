@@ -233,8 +233,38 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ),
         ("line", "sector + 1U);", "sector + 2U);"),
         ("line", "follows(now, before) ? -1 : 0", "-1"),
-        ("line", "direction != 0 && direction", "direction"),
+        (
+            "line",
+            "is_second = direction != 0 && direction",
+            "is_second = direction",
+        ),
         ("line", "direction == supervisor->turn_direction;", "true;"),
+        (
+            "line",
+            "} else if (!is_slow(supervisor, limits)) {",
+            "} else if (!is_slow(supervisor, limits) || true) {",
+        ),
+        ("line", "supervisor->turn_interval = 0;\n        if", "if"),
+        (
+            "line",
+            "supervisor->turn_direction == 0 && direction != 0",
+            "direction != 0",
+        ),
+        (
+            "line",
+            "(supervisor->turn_interval == 0) ? 0 : supervisor",
+            "supervisor",
+        ),
+        (
+            "line",
+            "supervisor->mode != HEXAGEN_MODE_CALIBRATE && hexagen_is_over",
+            "hexagen_is_over",
+        ),
+        (
+            "line",
+            "supervisor->mode != HEXAGEN_MODE_CALIBRATE && hexagen_is_over",
+            "supervisor->mode == HEXAGEN_MODE_RUN && hexagen_is_over",
+        ),
         ("line", "countdown = limits->start_periods", "countdown = 1"),
         (
             "line",

@@ -28,6 +28,11 @@ HEXAGEN_LIMITS_OF(of_c_and_a, 4095, false, 10, 2048, 1946, 2150, INT32_C(2000000
 HEXAGEN_LIMITS(loose, 4095, true, 3, 3000, 0, 4095, INT32_C(2147483647), -INT32_C(4095) * 8,
     INT32_C(4095) * 8, 8, 1, 0, 0, 0, 0x04236510, 7, 0, 0, 65535);
 
+/* A trip level within the tolerance of the offsets. */
+HEXAGEN_LIMITS(close, 4095, false, 18, 2048, 1946, 2150, INT32_C(50) * 262144,
+    -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 4, 20, 0, 0, 0, 0x04236510, 5, 0, 0,
+    65535);
+
 /* A start of at most nine periods. */
 HEXAGEN_LIMITS(starting, 4095, false, 18, 2048, 1946, 2150, INT32_C(509607936),
     -INT32_C(2150) * 262144, (INT32_C(4095) - 1946) * 262144, 2, 0, 0, 0, 0, 0x04236510, 5, 9, 0,
@@ -53,8 +58,8 @@ static int64_t current(const hexagen_limits *limits, int sensor, int64_t count, 
 /* Phases of the sensors, 0 to 2. */
 static const int phases[3][2] = { { 0, 1 }, { 1, 2 }, { 2, 0 } };
 
-static hexagen_fault fault_of(
-    const hexagen_limits *limits, const hexagen_sample *sample, int64_t i_a, int64_t i_b)
+static hexagen_fault fault_of(const hexagen_limits *limits, const hexagen_sample *sample,
+    hexagen_mode mode, int64_t i_a, int64_t i_b)
 {
     const int *const places = phases[limits->sensed];
     const uint16_t a = sample->adc[places[0]], b = sample->adc[places[1]];
@@ -65,7 +70,8 @@ static hexagen_fault fault_of(
     if (sample->hall == 0 || sample->hall > 6) {
         return HEXAGEN_FAULT_HALL;
     }
-    if (size(i_a) > trip || size(i_b) > trip || size(i_a + i_b) > trip) {
+    if (mode != HEXAGEN_MODE_CALIBRATE
+        && (size(i_a) > trip || size(i_b) > trip || size(i_a + i_b) > trip)) {
         return HEXAGEN_FAULT_OVER_CURRENT;
     }
     return HEXAGEN_FAULT_NONE;
@@ -90,7 +96,7 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
     const uint16_t counts[2] = { sample.adc[places[0]], sample.adc[places[1]] };
     const int64_t first = current(limits, 0, counts[0], offset_a);
     const int64_t second = current(limits, 1, counts[1], offset_b);
-    const hexagen_fault fault = fault_of(limits, &sample, first, second);
+    const hexagen_fault fault = fault_of(limits, &sample, mode, first, second);
     int64_t i[3];
     hexagen_supervisor supervisor;
     hexagen_checked checked;
@@ -217,10 +223,10 @@ static int brakes(void)
     STATES(rests(&supervisor, all[0], 1, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
     STATES(rests(&supervisor, all[0], 1, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
     STATES(rests(&supervisor, all[0], 5, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
-    STATES(rests(&supervisor, all[0], 4, 3, HEXAGEN_LEG_OFF, true, 1) == 0);
-    STATES(rests(&supervisor, all[0], 6, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
-    STATES(rests(&supervisor, all[0], 3, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
-    STATES(rests(&supervisor, all[0], 2, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
+    STATES(rests(&supervisor, all[0], 4, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 6, 2, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, all[0], 3, 2, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 2, 4, HEXAGEN_LEG_OFF, true, 0) == 0);
     hexagen_brake(&supervisor);
     STATES(rests(&supervisor, all[0], 6, 4, HEXAGEN_LEG_OFF, true, -1) == 0);
     STATES(rests(&supervisor, all[0], 6, 2, HEXAGEN_LEG_LOW, false, 0) == 0);
@@ -230,6 +236,81 @@ static int brakes(void)
     hexagen_brake(&supervisor);
     STATES(!hexagen_resume(&supervisor) && supervisor.mode == HEXAGEN_MODE_TRIPPED);
     STATES(hexagen_reset(&supervisor, all[0]) && supervisor.turn_direction == 0);
+    return 0;
+}
+
+/*
+ * A rotor that stands stays shorted whatever one sensor does: edges there and back are no motion. Two
+ * edges in one direction are.
+ */
+static int chatters(void)
+{
+    hexagen_supervisor supervisor;
+    hexagen_start(&supervisor, all[0]);
+    hexagen_brake(&supervisor);
+    /* From the first period on. */
+    STATES(rests(&supervisor, all[0], 4, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 6, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 4, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 6, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 4, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    for (unsigned time = 0; time < 9; time++) {
+        STATES(rests(&supervisor, all[0], 6, 1 + time % 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+        STATES(rests(&supervisor, all[0], 4, 1 + time % 2, HEXAGEN_LEG_LOW, false, 0) == 0);
+    }
+    STATES(rests(&supervisor, all[0], 4, 9, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 5, 1, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 4, 9, HEXAGEN_LEG_LOW, false, 0) == 0);
+    /* It turns, one sample is disturbed, and it stops in the middle of braking torque. */
+    STATES(rests(&supervisor, all[0], 6, 3, HEXAGEN_LEG_LOW, false, 0) == 0);
+    STATES(rests(&supervisor, all[0], 2, 4, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, all[0], 3, 2, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(rests(&supervisor, all[0], 2, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 3, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 1, 2, HEXAGEN_LEG_OFF, true, 1) == 0);
+    STATES(supervisor.turn_interval == 4);
+    STATES(rests(&supervisor, all[0], 3, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 1, 1, HEXAGEN_LEG_OFF, true, 0) == 0);
+    STATES(rests(&supervisor, all[0], 3, 9, HEXAGEN_LEG_LOW, false, 0) == 0);
+    return 0;
+}
+
+/* What a calibration with these counts ends in; a trip level of 50 counts, a tolerance of 102. */
+static hexagen_fault calibrates(uint16_t count_a, uint16_t count_b)
+{
+    const volatile int32_t set_point = 0;
+    const hexagen_sample sample = hexagen_with_hall(count_a, count_b, 5);
+    hexagen_supervisor supervisor;
+    hexagen_start(&supervisor, &close);
+    hexagen_calibrate(&supervisor, &close);
+    for (unsigned period = 0; period < 17; period++) {
+        hexagen_checked checked;
+        if (!hexagen_check(&supervisor, &close, &sample, &set_point, &checked)) {
+            (void)hexagen_rest(&supervisor, &close, &sample, &checked);
+        }
+    }
+    return supervisor.fault;
+}
+
+/* Offsets are judged as offsets, not as currents by the nominal ones. */
+static int judges_offsets(void)
+{
+    hexagen_supervisor supervisor;
+    STATES(calibrates(2150, 2150) == HEXAGEN_FAULT_NONE);
+    STATES(calibrates(1946, 2150) == HEXAGEN_FAULT_NONE);
+    STATES(calibrates(2048, 1946) == HEXAGEN_FAULT_NONE);
+    STATES(calibrates(2151, 2048) == HEXAGEN_FAULT_OFFSET);
+    STATES(calibrates(2048, 1945) == HEXAGEN_FAULT_OFFSET);
+    STATES(calibrates(1, 4094) == HEXAGEN_FAULT_OFFSET);
+    STATES(calibrates(0, 2048) == HEXAGEN_FAULT_ADC_RANGE);
+    STATES(calibrates(2048, 4095) == HEXAGEN_FAULT_ADC_RANGE);
+    /* Currents, by the measured offsets, from the next period on. */
+    hexagen_start(&supervisor, &close);
+    hexagen_calibrate(&supervisor, &close);
+    STATES(rests(&supervisor, &close, 5, 16, HEXAGEN_LEG_OFF, false, 0) == 0);
+    supervisor.offset[0] = hexagen_shift_left(2150, 18);
+    STATES(rests(&supervisor, &close, 5, 1, HEXAGEN_LEG_OFF, false, 0) == 0);
+    STATES(supervisor.fault == HEXAGEN_FAULT_OVER_CURRENT);
     return 0;
 }
 
@@ -304,7 +385,8 @@ static hexagen_sample sample_of(
 
 int main(void)
 {
-    if (brakes() != 0 || waits() != 0 || bridges() != 0 || judges_the_bus() != 0) {
+    if (brakes() != 0 || chatters() != 0 || waits() != 0 || bridges() != 0 || judges_the_bus() != 0
+        || judges_offsets() != 0) {
         return 1;
     }
     for (unsigned set = 0; set < sizeof all / sizeof all[0]; set++) {

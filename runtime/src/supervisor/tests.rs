@@ -259,8 +259,12 @@ fn faults_are_reported_in_their_order() {
                     ..Supervisor::new(limits, &Sensors::AB)
                 };
                 let passed = supervisor.check(limits, &Sensors::AB, &sample, || true);
-                // There is no stall outside control.
-                let expected = expected.filter(|&fault| fault != Fault::Stall || mode == Mode::Run);
+                // There is no stall outside control, and no current without offsets.
+                let expected = expected.filter(|&fault| match fault {
+                    Fault::Stall => mode == Mode::Run,
+                    Fault::OverCurrent => mode != Mode::Calibrate,
+                    _ => true,
+                });
                 assert_eq!(passed.is_some(), mode == Mode::Run && expected.is_none());
                 if passed.is_some() {
                     continue;
@@ -346,6 +350,50 @@ fn calibration_takes_offsets_within_their_range_and_no_others() {
                     let words = expected.map(|count| Word::from(count) << limits.current_bits);
                     assert_eq!(supervisor.offsets[..2], words, "{limits:?} {adc:?}");
                 }
+            }
+        }
+    }
+}
+
+/// Offsets of which one shows more than the trip level, and two twice as much in the third phase: they
+/// are judged as offsets, and the currents of pre-charge by them.
+#[test]
+fn calibration_judges_no_current_by_offsets_that_it_has_not_measured() {
+    for limits in &ALL {
+        let [least, most] = limits.offsets;
+        let trip = i32::from(most - limits.offset) / 2 << limits.current_bits;
+        let limits = Limits { trip, ..*limits };
+        assert!(limits.hold(&Sensors::AB));
+        let ends_with = |adc: [u16; 2]| {
+            let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+            supervisor.calibrate(&limits);
+            let sample = Sample::with_hall(adc, HALL);
+            for _ in 0..1_u32 << limits.calibration_log2 {
+                let (_, rest) = supervisor.rest(&limits, &Sensors::AB, &sample);
+                assert_eq!(rest, Rest::Legs(LegState::Off));
+            }
+            supervisor
+        };
+        for adc in [[most, limits.offset], [most; 2], [least; 2], [most, least]] {
+            let supervisor = ends_with(adc);
+            assert_eq!(supervisor.mode, Mode::Precharge, "{limits:?} {adc:?}");
+            for (count, fault) in [(adc[0], None), (limits.offset, Some(Fault::OverCurrent))] {
+                let mut supervisor = supervisor.clone();
+                let sample = Sample::with_hall([count, adc[1]], HALL);
+                supervisor.rest(&limits, &Sensors::AB, &sample);
+                assert_eq!(supervisor.fault, fault, "{limits:?} {adc:?} {count}");
+            }
+        }
+        for (count, fault) in [
+            (most + 1, Fault::Offset),
+            (least - 1, Fault::Offset),
+            (1, Fault::Offset),
+            (limits.adc_max - 1, Fault::Offset),
+            (0, Fault::AdcRange),
+            (limits.adc_max, Fault::AdcRange),
+        ] {
+            for adc in [[count, limits.offset], [limits.offset, count], [count; 2]] {
+                assert_eq!(ends_with(adc).fault, Some(fault), "{limits:?} {adc:?}");
             }
         }
     }
@@ -758,13 +806,13 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
         rests(&mut supervisor, &limits, 1),
         [unknown, unknown, unknown, unknown, low, low, low]
     );
-    // It accelerates: the first sector since then is the first short interval.
+    // It accelerates: the first sector behind two edges in one direction is the first short interval.
     assert_eq!(rests(&mut supervisor, &limits, 5), [low; 3]);
-    assert_eq!(rests(&mut supervisor, &limits, 4), [forward; 3]);
-    assert_eq!(rests(&mut supervisor, &limits, 6), [forward; 4]);
-    // A sector that is skipped tells no direction; one back does.
-    assert_eq!(rests(&mut supervisor, &limits, 3), [unknown; 4]);
-    assert_eq!(rests(&mut supervisor, &limits, 2), [backward; 4]);
+    assert_eq!(rests(&mut supervisor, &limits, 4), [low; 3]);
+    assert_eq!(rests(&mut supervisor, &limits, 6), [forward; 2]);
+    // A sector that is skipped tells no direction; two edges back do.
+    assert_eq!(rests(&mut supervisor, &limits, 3), [unknown; 2]);
+    assert_eq!(rests(&mut supervisor, &limits, 2), [unknown; 4]);
     assert_eq!(
         rests(&mut supervisor, &limits, 6),
         [backward, backward, backward, backward, low, low]
@@ -784,6 +832,90 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
     supervisor.brake();
     assert_eq!(rests(&mut supervisor, &always, 1), [low; 9]);
     assert_eq!(rests(&mut supervisor, &always, 5), [low; 9]);
+}
+
+/// What each of these codes comes to while a drive brakes.
+fn braked<const N: usize>(supervisor: &mut Supervisor, codes: [u8; N]) -> [Rest; N] {
+    let limits = limits(12, false, 17);
+    codes.map(|hall| rests::<1>(supervisor, &limits, hall)[0])
+}
+
+/// Edges of a rotor that stands go there and back, whether one sample is disturbed or a sensor
+/// chatters; and so do those of one that is rocked by hand.
+#[test]
+fn a_rotor_that_stands_stays_shorted_whatever_one_sensor_does() {
+    let low = Rest::Legs(LegState::Low);
+    let unknown = Rest::Against(Word(0));
+    let limits = limits(12, false, 17);
+    let braking = || {
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+        supervisor.brake();
+        supervisor
+    };
+    // Stood since the call, turned forward before, and turned backward.
+    for before in [[4; 4], [1, 1, 5, 5], [2, 2, 6, 6]] {
+        for disturbed in [
+            [6, 6, 6, 6],
+            [5, 5, 5, 5],
+            [6, 4, 6, 4],
+            [5, 4, 5, 4],
+            [1; 4],
+        ] {
+            for samples in 1..=4 {
+                let mut supervisor = braking();
+                braked(&mut supervisor, before);
+                braked(&mut supervisor, [4; 6]);
+                for hall in [disturbed; 3]
+                    .into_iter()
+                    .flat_map(|codes| codes.into_iter().take(samples).chain([4; 6]))
+                {
+                    let rest = braked(&mut supervisor, [hall]);
+                    assert_eq!(rest, [low], "{before:?} {disturbed:?} {samples}");
+                }
+            }
+        }
+    }
+    // Chatter from the call on: no torque, and a short circuit as soon as without it.
+    let mut supervisor = braking();
+    let chatter = braked(&mut supervisor, [4, 6, 4, 6, 4, 6, 4, 6, 4, 6]);
+    assert_eq!(chatter[..5], [unknown; 5]);
+    assert_eq!(chatter[5..], [low; 5]);
+    // Chatter of a rotor that stops in the middle of braking torque.
+    let mut supervisor = braking();
+    braked(&mut supervisor, [1, 1, 5, 5, 4, 4]);
+    let chatter = braked(&mut supervisor, [6, 4, 6, 4, 6, 4, 6, 4]);
+    assert_eq!(chatter[1..4], [unknown; 3]);
+    assert_eq!(chatter[4..], [low; 4]);
+    // Turned to and fro by hand, five periods and more in each sector.
+    let mut supervisor = braking();
+    braked(&mut supervisor, [4; 6]);
+    for hall in [6, 2, 6, 4, 5, 4, 6, 2, 3, 2] {
+        assert_eq!(braked(&mut supervisor, [hall; 5]), [low; 5], "{hall}");
+    }
+}
+
+/// Two edges in one direction tell it; a disturbed sample costs the rest of its sector, and the next
+/// interval is that of the sector.
+#[test]
+fn a_turning_rotor_is_opposed_behind_two_edges_in_one_direction() {
+    let unknown = Rest::Against(Word(0));
+    let limits = limits(12, false, 17);
+    for (codes, sign) in [([1_u8, 5, 4, 6, 2, 3], 1), ([3, 2, 6, 4, 5, 1], -1)] {
+        let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
+        supervisor.brake();
+        let against = Rest::Against(Word(sign));
+        for (place, hall) in codes.into_iter().enumerate() {
+            let expected = if place < 2 { unknown } else { against };
+            assert_eq!(braked(&mut supervisor, [hall; 4]), [expected; 4], "{hall}");
+        }
+        let [first, second, third, ..] = codes;
+        let disturbed = [first, codes[5], first, first];
+        let lost = braked(&mut supervisor, disturbed);
+        assert_eq!(lost, [against, unknown, unknown, unknown]);
+        assert_eq!(braked(&mut supervisor, [second; 4]), [against; 4]);
+        assert_eq!(supervisor.turn.interval, 4);
+        assert_eq!(braked(&mut supervisor, [third; 4]), [against; 4]);
+    }
 }
 
 /// A start of at most nine periods, which two Hall edges in one direction end.

@@ -381,11 +381,11 @@ impl Default for Unread {
 pub struct Turn<W> {
     /// Hall code of the last period; 0 before the first.
     pub hall: HallCode,
-    /// Periods since the last edge.
+    /// Periods since the last edge that is not one back over the edge before it.
     pub age: W,
-    /// Periods between the last two edges.
+    /// Periods between two edges, the last the second in a row in its direction; 0 if the last edge is not.
     pub interval: W,
-    /// 1 forward, -1 backward; 0 before the first edge and behind one that skips sectors.
+    /// Of the last edge, 1 forward, -1 backward; 0 before the first and behind one that skips sectors.
     pub direction: W,
 }
 
@@ -397,6 +397,11 @@ impl<W: Word> Turn<W> {
             interval: word(0.0),
             direction: word(0.0),
         }
+    }
+
+    /// Whether a sector lasts so long that a short circuit may brake.
+    fn is_slow(&self, limits: &Limits) -> bool {
+        greater(self.age, self.interval) >= limits.brake_periods
     }
 }
 
@@ -609,7 +614,7 @@ impl<W: Word> Supervisor<W> {
             Some(Fault::AdcRange)
         } else if is_wrong {
             Some(Fault::Hall)
-        } else if i_max > limits.i_trip {
+        } else if i_max > limits.i_trip && self.mode != Mode::Calibrate {
             Some(Fault::OverCurrent)
         } else if is_sum_off {
             Some(Fault::CurrentSum)
@@ -638,11 +643,12 @@ impl<W: Word> Supervisor<W> {
         if self.mode == Mode::Precharge && found.is_none() {
             period = Period::Low;
         } else if self.mode == Mode::Brake && found.is_none() && self.countdown == 0.0 {
-            if greater(self.turn.age, self.turn.interval) >= limits.brake_periods {
+            if self.turn.is_slow(limits) {
                 period = Period::Low;
             } else {
                 period = Period::Control;
-                against = Some(if self.turn.direction == 0.0 {
+                let is_known = self.turn.interval > 0.0 && self.turn.direction != 0.0;
+                against = Some(if !is_known {
                     0.0
                 } else if self.turn.direction > 0.0 {
                     1.0
@@ -709,10 +715,20 @@ impl<W: Word> Supervisor<W> {
                 5 => -1.0,
                 _ => 0.0,
             };
-            is_second = direction != 0.0 && self.turn.direction == direction;
+            let last = self.turn.direction;
+            is_second = direction != 0.0 && last == direction;
+            let is_first = direction != 0.0 && last == 0.0;
+            let was_slow = self.turn.is_slow(limits);
+            // A slow rotor needs two edges in one direction to be another; one back is no motion.
+            if is_second {
+                self.turn.interval = self.turn.age;
+            } else if !was_slow {
+                self.turn.interval = word(0.0);
+            }
+            if is_second || (is_first && !was_slow) {
+                self.turn.age = word(0.0);
+            }
             self.turn.direction = word(direction);
-            self.turn.interval = self.turn.age;
-            self.turn.age = word(0.0);
         }
         self.turn.hall = code;
         self.turn.age = lesser(self.turn.age + 1.0, limits.brake_periods);
