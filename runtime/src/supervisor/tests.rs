@@ -361,7 +361,7 @@ fn calibration_takes_offsets_within_their_range_and_no_others() {
 fn calibration_judges_no_current_by_offsets_that_it_has_not_measured() {
     for limits in &ALL {
         let [least, most] = limits.offsets;
-        let trip = i32::from(most - limits.offset) / 2 << limits.current_bits;
+        let trip = (i32::from(most - limits.offset) / 2) << limits.current_bits;
         let limits = Limits { trip, ..*limits };
         assert!(limits.hold(&Sensors::AB));
         let ends_with = |adc: [u16; 2]| {
