@@ -450,7 +450,7 @@ fn subjects() -> Vec<Subject> {
     // Of the motors whose vectors reach the whole bus; `low_legs` compares the others with the model.
     for motor in motors()
         .into_iter()
-        .filter(|motor| motor.name != "hoverboard-hub")
+        .filter(|motor| !motor.text.starts_with("board = "))
     {
         for variant in ["fcs-mpc", "fcs-mpc:word=16", "phcc", "phcc:word=16"] {
             subjects.extend(Subject::new(&motor.name, &motor.text, variant));

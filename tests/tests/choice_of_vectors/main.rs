@@ -567,7 +567,7 @@ fn subjects() -> BTreeMap<String, (String, Subject)> {
     settings.retain(is_taken);
     // Those whose vectors reach the whole bus; `low_legs` compares the others with the model.
     let mut motors = motors();
-    motors.retain(|motor| motor.name != "hoverboard-hub");
+    motors.retain(|motor| !motor.text.starts_with("board = "));
     let drives: Vec<_> = motors
         .iter()
         .flat_map(|motor| settings.iter().map(move |settings| (motor, settings)))

@@ -65,7 +65,7 @@ pub fn torque_speed(plan: &TorqueSpeed<'_>) -> Plot {
     }
     draw_demand(&mut plot, plan, &x_range);
     for (name, points) in &plan.bounds {
-        draw_bound(&mut plot, name, points, &y_range);
+        draw_bound(&mut plot, name, points, [&x_range, &y_range]);
     }
     for curve in &plan.curves {
         draw_curve(&mut plot, curve, y_range.start);
@@ -106,10 +106,12 @@ fn draw_demand(plot: &mut Plot, plan: &TorqueSpeed<'_>, x_range: &Range<f64>) {
     }
 }
 
-/// The part of a bound within a range of torques.
-fn draw_bound(plot: &mut Plot, name: &str, points: &[Point], y_range: &Range<f64>) {
-    let below_top = |point: &&Point| point.1 <= y_range.end;
-    let points: Vec<Point> = points.iter().filter(below_top).copied().collect();
+/// The part of a bound within ranges of speed and torque.
+fn draw_bound(plot: &mut Plot, name: &str, points: &[Point], ranges: [&Range<f64>; 2]) {
+    let [x_range, y_range] = ranges;
+    let is_seen =
+        |&&(x, y): &&Point| y <= y_range.end && (x_range.start..=x_range.end).contains(&x);
+    let points: Vec<Point> = points.iter().filter(is_seen).copied().collect();
     let stroke = Stroke::dashed(DEMAND, 1.5, (1.5, 3.0));
     plot.series(Series::new(name, above(&points, y_range.start), stroke));
 }
