@@ -26,6 +26,8 @@ pub struct Machine<'g> {
     /// Set-point words, in the program's order.
     pub params: Vec<i32>,
     values: Vec<i64>,
+    /// Nodes of the last function that ran, its first ones.
+    evaluated: usize,
     /// Places of every node's operands: of the step, then of the setters.
     operands: Vec<Vec<[usize; 4]>>,
 }
@@ -60,13 +62,16 @@ impl<'g> Machine<'g> {
                 .map(|(_, word)| word.initial)
                 .collect(),
             values: vec![],
+            evaluated: 0,
             operands: program.functions().map(operand_places).collect(),
         }
     }
 
-    /// A value of the function that ran last; `None` before any ran. Of a stage that did not run it is 0.
+    /// A value of the function that ran last; `None` if it did not come so far. Of a guarded stage that did not
+    /// run it is 0.
     pub fn value(&self, value: Value) -> Option<i64> {
-        self.values.get(value.index()).copied()
+        let is_evaluated = value.index() < self.evaluated;
+        is_evaluated.then(|| self.values[value.index()])
     }
 
     /// Runs one step; returns the outputs in the order of the step's list.
@@ -139,6 +144,7 @@ impl<'g> Machine<'g> {
     ) -> Result<(), Escape> {
         self.values.clear();
         self.values.resize(function.nodes.len(), 0);
+        self.evaluated = end;
         for stage in function.stages.iter().filter(|stage| stage.first < end) {
             let runs = stage
                 .guard

@@ -3,7 +3,7 @@
 
 use crate::Interpreted;
 use crate::engine::Prepared;
-use hexagen::{Command, Legs, Mode, Sample};
+use hexagen::{Command, Legs, Sample};
 use hexagen_codegen::interface::Unit;
 use hexagen_codegen::ir::{Phase, Told, Value};
 use hexagen_codegen::spec::HallCapture;
@@ -83,6 +83,11 @@ pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Repla
         replayed.periods += 1;
     }
     writer.flush().map_err(csv::Error::from)?;
+    if replayed.periods == 0 {
+        return Err(LogError(
+            "no periods; give a header and a row per period".to_owned(),
+        ));
+    }
     Ok(replayed)
 }
 
@@ -231,20 +236,18 @@ impl<'g> View<'g> {
                 format!("{:.6}", f64::from(on) / self.timer_period)
             })
         }));
-        // Without control the law computes its tracking alone.
-        let runs = matches!(status.mode, Mode::Run | Mode::Brake);
-        let word = |value: Value| drive.word(value).filter(|_| runs);
+        // Without control the law tracks the rotor alone, and other words are empty.
         row.extend(self.signals.iter().map(|(_, value, unit)| {
-            word(*value).map_or(String::new(), |word| {
+            drive.word(*value).map_or(String::new(), |word| {
                 let of_one = f64::from(unit.factor) / f64::from(unit.shift).exp2() / FRACTION;
                 format!("{:.6}", of_one * word as f64)
             })
         }));
-        row.extend(
-            self.words
-                .iter()
-                .map(|(_, value)| word(*value).map_or(String::new(), |word| word.to_string())),
-        );
+        row.extend(self.words.iter().map(|(_, value)| {
+            drive
+                .word(*value)
+                .map_or(String::new(), |word| word.to_string())
+        }));
         row
     }
 }

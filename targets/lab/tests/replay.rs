@@ -100,6 +100,8 @@ fn a_replayed_log_has_the_commands_and_words_of_the_run() {
                 );
             }
         }
+        // The rotor is tracked while a start waits for its angle.
+        assert!(rows[1][column("hall")].parse::<u8>().is_ok(), "{motor}");
         let last = &rows[PERIODS - 1];
         assert_eq!(last[column("mode")], "Run", "{motor}");
         let word: f64 = last[column("i_a")].parse().expect("a word");
@@ -143,6 +145,7 @@ fn a_log_that_does_not_fit_is_told_with_its_line() {
         ),
         ("adc_1,adc_2,hall,ticks,amps\n2048,2048,1,5,1\n", "amps"),
         ("adc_1,adc_2,hall,ticks\n2048,x,1,5\n", "line: 2"),
+        ("adc_1,adc_2,hall,ticks\n", "no periods"),
     ] {
         let error = replay(&drive, log.as_bytes(), Vec::new()).expect_err(log);
         assert!(error.to_string().contains(told), "{error}");
