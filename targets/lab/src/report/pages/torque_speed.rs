@@ -52,8 +52,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     };
     let note = format!(
         "Dots, and speeds in the legend, are those at which mean torque {held} of the demand (or of the torque in the legend, for a limited \
-         set-point). Curves end where the search for this limit ended. Dotted, from where they fall below the plot's top: the envelope, up to which the bus \
-         drives the whole current of the own controller's reference, and to its right the bound of any current within that reference's peak."
+         set-point). Curves end where the search for this limit ended. Dotted, where they cross the plot: the envelope, up to which the bus \
+         drives the whole current of the own controller's reference, and the bound of any current within that reference's peak."
     );
     vec![
         Block::Switches(keys.collect()),
