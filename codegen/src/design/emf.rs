@@ -54,18 +54,36 @@ pub fn zero_sum_integral(shape: EmfShape, theta: f64) -> f64 {
 
 /// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
 pub fn squared_length(shape: EmfShape, theta: f64) -> f64 {
-    [0.0, THIRD, 2.0 * THIRD]
-        .iter()
-        .map(|shift| zero_sum_shape(shape, theta - shift).powi(2))
-        .sum::<f64>()
-        * 2.0
-        / 3.0
+    length_of(zero_sum_phases(shape, theta))
+}
+
+/// 2/3 of the sum of squares.
+fn length_of(phases: [f64; 3]) -> f64 {
+    phases.iter().map(|value| value.powi(2)).sum::<f64>() * 2.0 / 3.0
+}
+
+/// A function of phase a for the three phases.
+pub fn phases(of_a: impl Fn(f64) -> f64, theta: f64) -> [f64; 3] {
+    [0.0, THIRD, 2.0 * THIRD].map(|shift| of_a(theta - shift))
+}
+
+/// [`zero_sum_shape`] of the three phases.
+pub fn zero_sum_phases(shape: EmfShape, theta: f64) -> [f64; 3] {
+    phases(|theta| zero_sum_shape(shape, theta), theta)
 }
 
 /// Phase-a current per ampere of set-point, parallel to the EMF and of constant torque:
 /// (2/3) (k_t/k_phase) s_a / |f|^2 with `ratio` = k_t/k_phase.
 pub fn proportional_current(shape: EmfShape, ratio: f64, theta: f64) -> f64 {
-    2.0 / 3.0 * ratio * zero_sum_shape(shape, theta) / squared_length(shape, theta)
+    let [of_a, ..] = proportional_currents(shape, ratio, theta);
+    of_a
+}
+
+/// The same for the three phases.
+pub fn proportional_currents(shape: EmfShape, ratio: f64, theta: f64) -> [f64; 3] {
+    let phases = zero_sum_phases(shape, theta);
+    let length = length_of(phases);
+    phases.map(|value| 2.0 / 3.0 * ratio * value / length)
 }
 
 /// A periodic function as parabolas over equal segments of a turn.

@@ -9,9 +9,9 @@
 //! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
 //! its two phases; its commutations take more and are left out.
 
-use super::emf::{zero_sum_integral, zero_sum_shape};
+use super::emf::{phases, proportional_currents, zero_sum_integral, zero_sum_phases};
 use crate::spec::{EmfShape, Reference, Spec};
-use std::f64::consts::{FRAC_PI_3, TAU};
+use std::f64::consts::FRAC_PI_3;
 
 /// Angles of a sector at which the voltage is looked at. The shapes' symmetries repeat the rest of a turn.
 const ANGLES: u32 = 60;
@@ -73,7 +73,7 @@ impl Envelope {
 
     /// Torque per ampere of set-point, Nm/A.
     pub fn torque_constant(&self) -> f64 {
-        self.emf_constant * self.torque_factor()
+        self.emf_constant * self.emf_shape.torque_factor(self.reference)
     }
 
     /// Greatest motoring torque at a speed in mechanical rad/s, Nm; 0 where the EMF alone takes more than the
@@ -125,22 +125,11 @@ impl Envelope {
 
     /// Greatest phase current of the largest set-point, ampere.
     pub fn peak_current(&self) -> f64 {
-        self.max_current
-            * match self.reference {
-                Reference::QuasiSquare => 1.0,
-                Reference::Proportional => self.emf_shape.proportional_peak(),
-            }
+        self.max_current * self.emf_shape.current_peak(self.reference)
     }
 
     fn line_voltage(&self) -> f64 {
         self.v_bus * self.reach
-    }
-
-    fn torque_factor(&self) -> f64 {
-        match self.reference {
-            Reference::QuasiSquare => self.emf_shape.quasi_square_factor(),
-            Reference::Proportional => self.emf_shape.proportional_factor(),
-        }
     }
 
     /// By the voltages between all legs.
@@ -206,18 +195,17 @@ impl Envelope {
         }
     }
 
-    /// Phase currents per ampere of set-point, parallel to the EMF: (2/3) (k_t/k_phase) s/|f|^2.
+    /// Phase currents of a proportional reference per ampere of set-point.
     fn unit_currents(&self, theta: f64) -> [f64; 3] {
-        let shape = phases(|theta| zero_sum_shape(self.emf_shape, theta), theta);
-        let squared_length = 2.0 / 3.0 * shape.iter().map(|value| value * value).sum::<f64>();
-        let scale = 2.0 / 3.0 * self.torque_factor() / squared_length;
-        shape.map(|value| scale * value)
+        let ratio = self.emf_shape.torque_factor(self.reference);
+        proportional_currents(self.emf_shape, ratio, theta)
     }
 
-    /// Mean phase EMF over a turn of `turn` from `theta` on, per rad/s.
-    fn mean_emf(&self, theta: f64, turn: f64) -> [f64; 3] {
+    /// Mean EMF of the phases, less their mean, over a turn of `turn` electrical radians from `theta` on, volt
+    /// per mechanical rad/s.
+    pub fn mean_emf(&self, theta: f64, turn: f64) -> [f64; 3] {
         let mean = if turn < 1e-6 {
-            phases(|theta| zero_sum_shape(self.emf_shape, theta), theta)
+            zero_sum_phases(self.emf_shape, theta)
         } else {
             let integral = |theta| zero_sum_integral(self.emf_shape, theta);
             let (from, to) = (phases(integral, theta), phases(integral, theta + turn));
@@ -230,11 +218,6 @@ impl Envelope {
 /// The angles of a sector, radian.
 fn sector() -> impl Iterator<Item = f64> {
     (0..ANGLES).map(|angle| FRAC_PI_3 * f64::from(angle) / f64::from(ANGLES))
-}
-
-/// A function of phase a for the three phases.
-fn phases(of_a: impl Fn(f64) -> f64, theta: f64) -> [f64; 3] {
-    [0.0, 1.0, 2.0].map(|lag| of_a(theta - lag * TAU / 3.0))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! Conventions of `hexagen::conventions`: phase a rises through zero at theta_e = 0, b lags by a
 //! third of a turn; shapes have half-wave symmetry and amplitude 1.
 
-use super::EmfShape;
+use super::{EmfShape, Reference};
 use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
 
 impl EmfShape {
@@ -125,6 +125,22 @@ impl EmfShape {
     /// 1.5 for a sine.
     pub fn proportional_factor(self) -> f64 {
         1.0 + self.at(PI / 6.0)
+    }
+
+    /// Torque per ampere of set-point over the phase constant, for a shape of the current reference.
+    pub fn torque_factor(self, reference: Reference) -> f64 {
+        match reference {
+            Reference::QuasiSquare => self.quasi_square_factor(),
+            Reference::Proportional => self.proportional_factor(),
+        }
+    }
+
+    /// Greatest phase current per ampere of set-point, for a shape of the current reference.
+    pub fn current_peak(self, reference: Reference) -> f64 {
+        match reference {
+            Reference::QuasiSquare => 1.0,
+            Reference::Proportional => self.proportional_peak(),
+        }
     }
 
     /// Greatest phase current of the reference parallel to the EMF, per ampere of set-point:

@@ -1,6 +1,6 @@
 //! Phase currents at the largest set-point without a fault, for the checks of the trip level.
 
-use super::{ControllerSpec, EmfShape, Reference, Spec};
+use super::{ControllerSpec, EmfShape, Spec};
 
 /// Default trip level over the largest set-point: above any overshoot, and safe for switches and
 /// magnets chosen for the motor. Whole vectors may need more.
@@ -38,11 +38,8 @@ impl Spec {
 impl Drive<'_> {
     /// Greatest phase current of the reference at the largest set-point, ampere.
     pub fn peak(&self) -> f64 {
-        self.max_current
-            * match self.controller.common().reference {
-                Reference::QuasiSquare => 1.0,
-                Reference::Proportional => self.emf_shape.proportional_peak(),
-            }
+        let reference = self.controller.common().reference;
+        self.max_current * self.emf_shape.current_peak(reference)
     }
 
     /// Greatest change of a phase current by one vector applied for `periods`, at standstill,

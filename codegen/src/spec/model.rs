@@ -4,8 +4,7 @@
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
 use crate::spec::{
-    ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, RATIO_BITS, Reference,
-    SensedPhases,
+    ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, RATIO_BITS, SensedPhases,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -26,12 +25,8 @@ impl Spec {
     /// k_t: torque in Nm per ampere of set-point, from the EMF's and the current reference's
     /// shapes ([`EmfShape::quasi_square_factor`], [`EmfShape::proportional_factor`]).
     pub fn torque_constant(&self) -> f64 {
-        let shape = self.motor.emf_shape;
-        self.motor.emf_constant
-            * match self.controller.common().reference {
-                Reference::QuasiSquare => shape.quasi_square_factor(),
-                Reference::Proportional => shape.proportional_factor(),
-            }
+        let reference = self.controller.common().reference;
+        self.motor.emf_constant * self.motor.emf_shape.torque_factor(reference)
     }
 
     /// Greatest age of a valid Hall edge, ticks: the widest sector at the minimum speed, at least 8.

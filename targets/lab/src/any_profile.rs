@@ -1,14 +1,14 @@
 //! The greatest torque of any current profile whatever: a bound for every controller.
 //!
-//! Over a sector of 60 degrees, whose turned copies make up the turn, currents at equal steps are free. Each
-//! step's voltage v = (i' - A i)/B + e, with A and B over the step and e its mean EMF, stays in the hexagon
-//! that the legs reach, and each phase current within the peak of the drive's own reference at its largest set-point. The mean torque
-//! (3/2) e.i/omega is linear, so a linear program finds the best profile.
+//! Over a sector of 60 degrees, whose turned copies make up the turn, currents at equal steps are free. The
+//! voltage that moves the current of a step's begin, i, to that of its end, i', is v = (i' - A i)/B + e: A
+//! and B are those of the step in place of the control period, e is its mean EMF. It stays in the hexagon
+//! that the legs reach, and each phase current within the peak of the drive's own reference at its largest
+//! set-point. The mean torque (3/2) e.i/omega is linear, so a linear program finds the best profile.
 
 use hexagen_codegen::design::Envelope;
-use hexagen_codegen::design::emf::zero_sum_integral;
 use microlp::{ComparisonOp, LinearExpr, OptimizationDirection, Problem, SolveOutcome, Variable};
-use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
+use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
 /// Steps of a sector.
 const STEPS: usize = 24;
@@ -30,7 +30,7 @@ pub fn torque(limits: &Envelope, omega_m: f64) -> f64 {
         .collect();
     // The torque of a step goes by the mean of the currents at its ends; that of the last ends in the
     // first one, turned.
-    let share = 0.75 * limits.emf_constant / STEPS as f64;
+    let share = 0.75 / STEPS as f64;
     let currents: Vec<[Variable; 2]> = (0..STEPS)
         .map(|k| {
             let before = if k == 0 {
@@ -53,7 +53,7 @@ pub fn torque(limits: &Envelope, omega_m: f64) -> f64 {
     for k in 0..STEPS {
         for side in 0..6 {
             let along = unit(FRAC_PI_6 + FRAC_PI_3 * side as f64);
-            let emf = omega_m * limits.emf_constant * dot(along, mean[k]);
+            let emf = omega_m * dot(along, mean[k]);
             let mut voltage = LinearExpr::empty();
             add(&mut voltage, currents[k], along, -decay * gain);
             match currents.get(k + 1) {
@@ -107,13 +107,9 @@ fn add(sum: &mut LinearExpr, [alpha, beta]: [Variable; 2], along: Vector, scale:
     sum.add(beta, scale * along[1]);
 }
 
-/// Mean unit EMF over a step, in the plane.
+/// Mean EMF over a step in the plane, volt per mechanical rad/s.
 fn mean_emf(limits: &Envelope, theta: f64, step: f64) -> Vector {
-    let integral = |lag: f64| {
-        let to = zero_sum_integral(limits.emf_shape, theta + step - lag);
-        (to - zero_sum_integral(limits.emf_shape, theta - lag)) / step
-    };
-    let [a, b, c] = [0.0, 1.0, 2.0].map(|phase| integral(phase * TAU / 3.0));
+    let [a, b, c] = limits.mean_emf(theta, step);
     [a, (b - c) / 3_f64.sqrt()]
 }
 

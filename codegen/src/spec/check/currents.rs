@@ -2,7 +2,7 @@
 
 use super::inverter::{Adc, Inverter, usual_tolerance};
 use super::motor::Motor;
-use crate::diagnostics::catalogue;
+use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
 use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
 use crate::spec::reader::Reader;
@@ -100,20 +100,37 @@ fn read(
     Some(Levels { shown, max })
 }
 
+/// A current between some ADC counts, `least` ampere, and the trip level.
+pub(super) fn check_within(
+    part: &Part,
+    current: f64,
+    (least, counts): (f64, &str),
+    trip: f64,
+    errors: &mut Collector,
+) {
+    if current < least * (1.0 - 1e-9) || current > trip * (1.0 + 1e-9) {
+        errors.push(catalogue::out_of_limits(
+            &part.location,
+            part.field,
+            &part.given,
+            &format!("{}, {counts},", engineering(at_least(least), "A")),
+            &format!("{}, the trip level", engineering(at_most(trip), "A")),
+        ));
+    }
+}
+
 /// Limits of the bus current, which is at most that of a phase.
 pub(super) fn bus(inverter: &Inverter, trip: f64, errors: &mut Collector) -> BusCurrents {
     let least = LEAST_COUNTS * inverter.adc.as_ref().map_or(0.0, |adc| adc.gain);
     let [drawn, returned] = inverter.bus_currents.each_ref().map(|given| {
         let given = given.as_ref()?;
-        if given.si < least * (1.0 - 1e-9) || given.si > trip * (1.0 + 1e-9) {
-            errors.push(catalogue::out_of_limits(
-                &given.part.location,
-                given.part.field,
-                &given.part.given,
-                &format!("{}, ten ADC counts,", engineering(at_least(least), "A")),
-                &format!("{}, the trip level", engineering(at_most(trip), "A")),
-            ));
-        }
+        check_within(
+            &given.part,
+            given.si,
+            (least, "ten ADC counts"),
+            trip,
+            errors,
+        );
         Some(given.si)
     });
     BusCurrents { drawn, returned }

@@ -4,7 +4,7 @@ use super::inverter::{Adc, Inverter};
 use super::motor::Motor;
 use super::sensing::Sensing;
 use super::{currents, relations};
-use crate::diagnostics::{Collector, at_least, at_most, catalogue, engineering, rpm};
+use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, CurrentSum, HallCapture, InverterSpec, SensedPhases};
@@ -121,23 +121,11 @@ fn current_sum(
     trip_current: f64,
     errors: &mut Collector,
 ) -> Option<CurrentSum> {
-    const TOLERANCE: &str = "current_sum_tolerance";
     let gain = adc.gain;
     if let Some(tolerance) = sensing.sum_tolerance {
-        let part = reader.part(TOLERANCE, String::new);
-        let least = LEAST_SUM * gain;
-        if tolerance < least * (1.0 - 1e-9) || tolerance > trip_current * (1.0 + 1e-9) {
-            errors.push(catalogue::out_of_limits(
-                &part.location,
-                TOLERANCE,
-                &part.given,
-                &format!("{}, two ADC counts,", engineering(at_least(least), "A")),
-                &format!(
-                    "{}, the trip level",
-                    engineering(at_most(trip_current), "A")
-                ),
-            ));
-        }
+        let part = reader.part("current_sum_tolerance", String::new);
+        let least = (LEAST_SUM * gain, "two ADC counts");
+        currents::check_within(&part, tolerance, least, trip_current, errors);
     }
     let samples = sensing.sum_samples.unwrap_or(SUM_SAMPLES);
     let default = (SUM_TOLERANCE * trip_current).max(SUM_OF_RANGE * adc.reach);
