@@ -175,7 +175,8 @@ mod tests {
                     winding: star, back_emf: 0.1648 V/(rad/s) line_to_line peak, emf_shape: trapezoidal,
                     rated_current: 20 A, rated_torque: 3.3 Nm, rated_speed: 2000 rpm },
                 inverter: { bus_voltage: #bus, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12,
-                    adc_range: 40 A, hall_timer_clock: 1 MHz },
+                    adc_range: 40 A, current_sensing: in_phase,
+                    hall_timer_clock: 1 MHz },
                 controller: pdcc { #options },
             }
         }

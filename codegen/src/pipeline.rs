@@ -352,6 +352,7 @@ f_pwm = "20 kHz"
 timer_clock = "72 MHz"
 adc_bits = 12
 adc_range = "40 A"
+current_sensing = "in_phase"
 hall_timer_clock = "1 MHz"
 [controller]
 kind = "pdcc"

@@ -68,7 +68,12 @@ pub fn specification(inverter: &str, controller: &str) -> String {
     } else {
         MOTOR.to_owned()
     };
-    format!("{motor}{inverter}\n[controller]\n{controller}\n")
+    let place = if inverter.contains("current_sensing") {
+        ""
+    } else {
+        "current_sensing = \"in_phase\"\n"
+    };
+    format!("{motor}{place}{inverter}\n[controller]\n{controller}\n")
 }
 
 /// What each drive is, and its specification.

@@ -136,6 +136,7 @@ hexagen::controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
             maximum_speed: 40000 rpm,
             hall_timer_clock: 1 MHz,
         },

@@ -40,6 +40,7 @@ hexagen::controller! {
             hall_timer_clock: 1 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
             stall_timeout: 1 ms,
         },
         controller: pdcc { speed_loop: on, hall_capture: timer, emf: model, saturation: torque_priority },

@@ -14,6 +14,7 @@ use std::path::PathBuf;
 ///         motor: "motors/hub.toml",
 ///         inverter: {
 ///             bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, adc_range: 40 A,
+///             current_sensing: in_phase,
 ///         },
 ///         controller: pdcc { emf: model, advance: 2 },
 ///     }

@@ -324,8 +324,8 @@ impl Code {
             ),
             Self::SensingWindow => say(
                 "A leg whose current is read in its low leg must be low around the sampling instant.",
-                "bus_voltage = \"48 V\"\ncurrent_sensing = \"low_side\"\nsettling_time = \"20 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
-                "bus_voltage = \"48 V\"",
+                "current_sensing = \"low_side\"\nsettling_time = \"20 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
+                "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
                 "Shorten the settling or the conversions, or lower the PWM frequency.",
             ),
             Self::MinimumLowTime => say(

@@ -1,7 +1,7 @@
 //! Fields in place of others.
 
 /// Fields that state one quantity in two ways.
-const ALTERNATIVES: [[&str; 2]; 11] = [
+const ALTERNATIVES: [[&str; 2]; 13] = [
     ["pole_pairs", "poles"],
     ["back_emf", "speed_constant"],
     ["f_pwm", "sampling_time"],
@@ -10,9 +10,11 @@ const ALTERNATIVES: [[&str; 2]; 11] = [
     ["adc_range", "shunt"],
     ["adc_range", "amplifier_gain"],
     ["adc_range", "adc_reference"],
+    ["adc_range", "amplifier_swing"],
     ["adc_gain", "shunt"],
     ["adc_gain", "amplifier_gain"],
     ["adc_gain", "adc_reference"],
+    ["adc_gain", "amplifier_swing"],
 ];
 
 /// Whether the one field replaces the other.

@@ -100,15 +100,21 @@ fn part(field: &'static str, written: &Field) -> Part {
     }
 }
 
-/// A bus voltage that is not the board's.
+/// A bus voltage that is not the board's, or limits that leave none.
 fn outside_of_board(whole: &Section, board: &Section) -> Option<Diagnostic> {
     let number = |field: Option<&Field>| match field.map(|field| &field.value) {
         Some(Value::Number(number)) => Some(number.si()),
         _ => None,
     };
+    let (low, high) = (board.field("bus_min"), board.field("bus_max"));
+    if let (Some(least), Some(most)) = (low, high)
+        && number(low) > number(high)
+    {
+        let limits = [part("bus_min", least), part("bus_max", most)];
+        return Some(catalogue::bus_limits_exchanged(&limits[0], &limits[1]));
+    }
     let given = whole.field("bus_voltage")?;
     let voltage = number(Some(given))?;
-    let (low, high) = (board.field("bus_min"), board.field("bus_max"));
     let (side, name, limit) = match (number(low), number(high)) {
         (Some(least), _) if voltage < least => ("below", "bus_min", low),
         (_, Some(most)) if voltage > most => ("above", "bus_max", high),

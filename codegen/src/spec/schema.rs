@@ -108,6 +108,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("shunt", &[D::Resistance], 1e-6, 100.0, "1 mohm"),
     plain("amplifier_gain", 1e-2, 1e4, "20"),
     quantity("adc_reference", &[D::Voltage], 0.1, 20.0, "3.3 V"),
+    quantity("amplifier_swing", &[D::Voltage], 0.01, 20.0, "1.35 V"),
     word("current_sensing", "low_side"),
     word("sensed_phases", "ab"),
     quantity("settling_time", &[D::Time], 0.0, 1e-4, "1 us"),

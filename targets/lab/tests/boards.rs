@@ -14,6 +14,8 @@ struct Numbers {
     bus: [f64; 2],
     /// Ampere per count of 12 bits.
     gain: f64,
+    /// Greatest current that the amplifiers show, ampere; none where the file does not tell.
+    linear: Option<f64>,
     /// Second; none where the motor's file says it.
     period: Option<f64>,
 }
@@ -26,10 +28,13 @@ fn numbers(file: &BoardFile) -> Numbers {
     let all = |name| number(name).unwrap_or_else(|| panic!("no {name}"));
     let shunt = number("shunt")
         .map(|shunt| all("adc_reference") / (4096.0 * shunt * all("amplifier_gain")));
+    let linear =
+        number("amplifier_swing").map(|swing| swing / (all("shunt") * all("amplifier_gain")));
     let periods = number("pwm_per_control").unwrap_or(1.0);
     Numbers {
         bus: [all("bus_min"), all("bus_max")],
         gain: shunt.or_else(|| number("adc_gain")).expect("a gain"),
+        linear,
         period: number("f_pwm").map(|frequency| periods / frequency),
     }
 }
@@ -55,7 +60,11 @@ fn stated(motor: &SpecAst) -> Stated {
 
 /// What keeps a motor from a board, by their numbers alone.
 fn obstacle(board: &Numbers, motor: &Spec, stated: &Stated) -> Option<&'static str> {
-    let (reach, max) = (2048.0 * board.gain, motor.inverter.max_current);
+    let converter = 2048.0 * board.gain;
+    let reach = board
+        .linear
+        .map_or(converter, |linear| linear.min(converter));
+    let max = motor.inverter.max_current;
     let period = board.period.unwrap_or(motor.inverter.t_s);
     let electrical = motor.inverter.maximum_speed * f64::from(motor.motor.pole_pairs);
     let turns = electrical * period / std::f64::consts::TAU;

@@ -9,6 +9,7 @@ controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
         },
         controller: pdcc,
     }

@@ -18,6 +18,7 @@ controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
         },
         controller: pdcc { reference: quasi_square },
     }
@@ -43,6 +44,7 @@ controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
             hall_timer_clock: 1 MHz,
         },
         controller: pdcc { hall_capture: timer, modulation: pair },
@@ -62,6 +64,7 @@ controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
         },
         controller: pdcc,
     }
@@ -88,6 +91,7 @@ controller! {
             timer_clock: 72 MHz,
             adc_bits: 12,
             adc_range: 40 A,
+            current_sensing: in_phase,
         },
         controller: pdcc { speed_loop: on },
     }
@@ -392,6 +396,7 @@ mod motors_of_any_name {
                         timer_clock: 72 MHz,
                         adc_bits: 12,
                         adc_range: 40 A,
+                        current_sensing: in_phase,
                     },
                     controller: pdcc { emf: model },
                 }

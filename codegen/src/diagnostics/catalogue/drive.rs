@@ -19,6 +19,19 @@ pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
     with_parts(error, &[limit])
 }
 
+/// A board whose least bus voltage is above its greatest.
+pub fn bus_limits_exchanged(low: &Part, high: &Part) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::OutsideOfBoard,
+        &low.location,
+        format!(
+            "`bus_min`: {} is above the board's `bus_max` of {}, so that no supply fits it; correct the board's file",
+            low.given, high.given
+        ),
+    );
+    with_parts(error, &[high])
+}
+
 /// Current sensors that the board does not have.
 pub fn sensors_not_there(given: &Part, own: &Part) -> Diagnostic {
     let error = Diagnostic::new(

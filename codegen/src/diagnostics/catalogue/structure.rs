@@ -100,6 +100,27 @@ pub fn missing_field(at: &Location, section: &str, name: &str, examples: &[Strin
     )
 }
 
+/// A field without default is missing, of which each word needs its meaning to be chosen.
+pub fn missing_choice(
+    at: &Location,
+    section: &str,
+    name: &str,
+    words: &[(&str, &str)],
+) -> Diagnostic {
+    let choices: Vec<String> = words
+        .iter()
+        .map(|(word, meaning)| format!("`{name}: {word}` ({meaning})"))
+        .collect();
+    Diagnostic::new(
+        Code::MissingField,
+        at,
+        format!(
+            "`{section}` lacks the field `{name}`; add {}",
+            choices.join(" or ")
+        ),
+    )
+}
+
 /// A field without its value.
 pub fn missing_value(at: &Location, name: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(

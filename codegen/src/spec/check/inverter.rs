@@ -50,7 +50,7 @@ pub(super) struct Adc {
     pub sensors: Vec<CurrentSensor>,
     /// Greatest deviation of a calibrated offset from the nominal one, counts.
     pub offset_tolerance: u32,
-    /// Greatest current of either sign on every sensor, ampere, with one count of margin.
+    /// Greatest current of either sign on every sensor, ampere: that of the last count, or of the amplifiers' swing.
     pub reach: f64,
     /// `adc_range`, `adc_gain` or `shunt` as written.
     pub part: Part,
@@ -343,7 +343,11 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
         return None;
     }
     let inverted = inverted?.unwrap_or_else(|| vec![0; count]);
-    let (gains, part) = gains?;
+    let Gains {
+        gains,
+        linear,
+        part,
+    } = gains?;
     let gain = *gains.first()?;
     if let Some(other) = gains
         .iter()
@@ -365,7 +369,7 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
     let reaches = gains.iter().zip(&offsets);
     let reach = reaches
         .map(|(gain, offset)| gain * f64::from((*offset).min(full - offset)))
-        .fold(f64::INFINITY, f64::min);
+        .fold(linear, f64::min);
     let offset_tolerance = read_offset_tolerance(reader, gain, full, errors)?;
     Some(Adc {
         bits: bits?,
@@ -377,30 +381,52 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
     })
 }
 
+/// What currents the sensors show.
+struct Gains {
+    /// Ampere per count of each sensor, positive.
+    gains: Vec<f64>,
+    /// Greatest current of either sign that the amplifiers show, ampere; none by themselves is infinite.
+    linear: f64,
+    /// `adc_range`, `adc_gain` or `shunt` as written.
+    part: Part,
+}
+
 /// Fields that say together what a count is worth.
 const SHUNT: [&str; 3] = ["shunt", "amplifier_gain", "adc_reference"];
 
-/// Ampere per count of each sensor, positive: from the range, as stated, or from shunt, amplifier and reference of a
-/// converter of so many counts.
+/// How far the amplifier's output follows the current.
+const SWING: &str = "amplifier_swing";
+
+/// The gains: from the range, as stated, or from shunt, amplifier and reference of a converter of so many counts.
 fn read_gains(
     reader: &Reader,
     phases: SensedPhases,
     counts: f64,
     errors: &mut Collector,
-) -> Option<(Vec<f64>, Part)> {
+) -> Option<Gains> {
     let all = |gain: f64| vec![gain; phases.phases().len()];
+    let swing = reader.plain_quantity(errors, SWING);
     let Some(shunt) = SHUNT.iter().find_map(|name| reader.field(name)) else {
+        if let Some(swing) = &swing {
+            let (at, given) = (&swing.part.location, &swing.part.given);
+            errors.push(catalogue::needless_field(at, SWING, given, "shunt"));
+        }
         reader.require_one_of(errors, ["adc_range", "adc_gain"]);
         let range = reader.plain_quantity(errors, "adc_range");
-        let gains = reader.field("adc_gain").and_then(|_| {
+        let stated = reader.field("adc_gain").and_then(|_| {
             sensing::of_each_phase(reader, "adc_gain", phases, errors, |one, errors| {
                 one.plain_quantity(errors, "adc_gain").map(|given| given.si)
             })
         });
-        return match range {
-            Some(range) => Some((all(2.0 * range.si / counts), range.part)),
-            None => Some((gains?, reader.part("adc_gain", String::new))),
+        let (gains, part) = match range {
+            Some(range) => (all(2.0 * range.si / counts), range.part),
+            None => (stated?, reader.part("adc_gain", String::new)),
         };
+        return Some(Gains {
+            gains,
+            linear: f64::INFINITY,
+            part,
+        });
     };
     for name in ["adc_range", "adc_gain"] {
         if let Some(field) = reader.field(name) {
@@ -417,8 +443,13 @@ fn read_gains(
     let [ohm, volt] = ["shunt", "adc_reference"].map(|name| reader.plain_quantity(errors, name));
     let amplified = reader.plain(errors, "amplifier_gain");
     let (ohm, volt, amplified) = (ohm?, volt?, amplified?);
-    let gain = volt.si / (counts * ohm.si * amplified.si);
-    Some((all(gain), ohm.part))
+    // Volt at the converter per ampere.
+    let sensitivity = ohm.si * amplified.si;
+    Some(Gains {
+        gains: all(volt.si / (counts * sensitivity)),
+        linear: swing.map_or(f64::INFINITY, |swing| swing.si / sensitivity),
+        part: ohm.part,
+    })
 }
 
 /// Default offset tolerance of an ADC of `full` counts, counts.

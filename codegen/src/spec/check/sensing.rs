@@ -75,9 +75,12 @@ fn time(reader: &Reader, errors: &mut Collector, name: &'static str) -> Option<f
     reader.plain_quantity(errors, name).map(|given| given.si)
 }
 
-/// In the phase by default; sensors in the low leg need their times, others take none.
+/// Where the sensors are has no default: a low leg's sensor read as one in the phase shows a wrong current. Sensors in
+/// the low legs need their times, others take none.
 fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing> {
     const FIELD: &str = "current_sensing";
+    const IN_PHASE: &str = "in_phase";
+    const LOW_SIDE: &str = "low_side";
     const NEEDED: [(&str, &str); 3] = [
         ("settling_time", "1 us"),
         ("aperture_time", "200 ns"),
@@ -91,9 +94,15 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
     ]
     .map(|name| time(reader, errors, name));
     let converters = reader.integer(errors, "current_adcs");
-    let is_low = reader
-        .word(errors, FIELD, &[("in_phase", false), ("low_side", true)])
-        .or_else(|| reader.field(FIELD).is_none().then_some(false))?;
+    let places = [
+        (
+            IN_PHASE,
+            "between the legs and the motor, as Hall-effect sensors are",
+        ),
+        (LOW_SIDE, "shunts between the low switches and ground"),
+    ];
+    reader.require_choice(errors, FIELD, &places);
+    let is_low = reader.word(errors, FIELD, &[(IN_PHASE, false), (LOW_SIDE, true)])?;
     if !is_low {
         let [settling, aperture, conversion] = NEEDED.map(|(name, _)| name);
         let names = [

@@ -159,7 +159,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         |options| Some(number(options.slew_rate?)),
     ),
     Row::of(
-        rule::quantity("residual_timeout", &[D::Time], 1e-5, 1.0, "5 ms")
+        rule::quantity("residual_timeout", &[D::Time], 1e-5, LONGEST_RESIDUAL, "5 ms")
             .by_default("none: the currents are not compared with the voltages")
             .about("Time, net of periods in which they do, after which currents that do not follow the voltages as the motor's data say trip the drive: a dead current sensor, an open or exchanged phase, wrong motor data; 50 control periods to 65,535; only with `emf: observer`"),
         |options| Some(number(options.residual_periods?)),
@@ -294,6 +294,9 @@ pub(crate) struct Surroundings {
 
 /// Least and greatest number of periods of `residual_timeout`.
 const RESIDUAL_PERIODS: [u32; 2] = [50, 65_535];
+
+/// Longest `residual_timeout`, second.
+const LONGEST_RESIDUAL: f64 = 1.0;
 
 /// Default commutation threshold, ampere; less for small motors.
 const COMMUTATION_THRESHOLD: f64 = 0.5;
@@ -505,7 +508,7 @@ fn read_residual_timeout(
                 "{} ({least} control periods)",
                 engineering(at_least(f64::from(least) * t_s), "s")
             ),
-            &engineering(at_most(f64::from(most) * t_s), "s"),
+            &engineering(at_most((f64::from(most) * t_s).min(LONGEST_RESIDUAL)), "s"),
         ));
         return None;
     }

@@ -96,6 +96,13 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Reports a missing field whose words are a matter of the hardware; each with its meaning.
+    pub fn require_choice(&self, errors: &mut Collector, name: &str, words: &[(&str, &str)]) {
+        if self.may_lack(name) {
+            errors.push(catalogue::missing_choice(&self.at, self.name, name, words));
+        }
+    }
+
     /// Reports when neither or both of two fields are given.
     pub fn require_one_of(&self, errors: &mut Collector, names: [&str; 2]) {
         match names.map(|name| self.section.field(name)) {

@@ -21,6 +21,7 @@ sampling_time = "50 us"
 timer_clock = "72 MHz"
 adc_bits = 12
 adc_range = "40 A"
+current_sensing = "in_phase"
 [controller]
 kind = "pdcc"
 "#;
@@ -165,6 +166,18 @@ fn sensors_that_the_board_does_not_have_are_refused() {
         assert!(text.contains("error[HX0330]"), "{text}");
         assert!(text.contains(&format!("its `{name}` is {own}")), "{text}");
     }
+}
+
+#[test]
+fn limits_that_leave_no_bus_voltage_are_told() {
+    let exchanged = BOARD.replace("bus_min = \"", "bus_min = \"9");
+    let folder = Folder::new("limits", MOTOR, &exchanged);
+    let call = r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml" }"#;
+    let text = folder.check(call).0.expect_err("no supply fits");
+    assert!(
+        text.contains("so that no supply fits it; correct the board's file"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -32,6 +32,7 @@ pub(super) const COMPLETE_CALL: &str = "pub Hub {
         timer_clock: 72 MHz,
         adc_bits: 12,
         adc_range: 40 A,
+        current_sensing: in_phase,
     },
     controller: pdcc,
 }
@@ -53,6 +54,7 @@ f_pwm = "20 kHz"
 timer_clock = "72 MHz"
 adc_bits = 12
 adc_range = "40 A"
+current_sensing = "in_phase"
 [controller]
 kind = "pdcc"
 "#;

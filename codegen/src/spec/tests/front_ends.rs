@@ -12,7 +12,7 @@ pub(super) const MACRO: &str = r"
                  rated_speed: 2000 rpm, inertia: 24 g cm2, inductance_tolerance: 15 %,
                  hall_codes: [1, 5, 4, 6, 2, 3] },
         inverter: { bus_voltage: 48V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12,
-                    adc_range: 40 A },
+                    adc_range: 40 A, current_sensing: in_phase },
         controller: pdcc { modulation: pair, emf: model, advance: 2, word: 32,
                            commutation_timeout: 10 periods },
     }";
@@ -37,6 +37,7 @@ f_pwm = "20 kHz"
 timer_clock = "72 MHz"
 adc_bits = 12
 adc_range = "40 A"
+current_sensing = "in_phase"
 [assumed.motor]
 rated_current = { value = "20 A", reason = "from the torque" }
 [controller]

@@ -17,6 +17,7 @@ rated_speed = "2000 rpm"
 [inverter]
 bus_voltage = "48 V"
 adc_bits = 12
+current_sensing = "in_phase"
 "#;
 
 const TIMER: &str = "f_pwm = \"20 kHz\"\ntimer_clock = \"72 MHz\"\n";

@@ -7,7 +7,12 @@ use std::path::Path;
 
 /// The inverter of a complete motor file with these lines in place of its range.
 fn with_lines(lines: &str) -> InverterSpec {
-    let text = COMPLETE.replace("adc_range = \"40 A\"", lines);
+    let complete = if lines.contains("current_sensing") {
+        COMPLETE.replace("current_sensing = \"in_phase\"\n", "")
+    } else {
+        COMPLETE.to_owned()
+    };
+    let text = complete.replace("adc_range = \"40 A\"", lines);
     let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
     match checked {
         Ok((spec, _)) => spec.inverter,
@@ -121,7 +126,7 @@ fn sensors_of_a_macro_call_and_of_a_file_are_alike() {
     let call = "pub Hub { motor: { pole_pairs: 4, resistance: 135 mohm per_phase, inductance: 0.22 mH per_phase, winding: star,
         back_emf: 0.1648 V/(rad/s) line_to_line peak, emf_shape: trapezoidal, rated_current: 20 A, rated_speed: 2000 rpm },
         inverter: { bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, sensed_phases: bc,
-        adc_gain: [19.5 mA/count, 19.7 mA/count], adc_offset: [2048, 2051], adc_inverted: [on, off] }, controller: pdcc }";
+        adc_gain: [19.5 mA/count, 19.7 mA/count], adc_offset: [2048, 2051], adc_inverted: [on, off], current_sensing: in_phase }, controller: pdcc }";
     let tokens = call.parse::<TokenStream>().expect("lexes");
     let ast = parse_macro(tokens).and_then(|input| input.load(Path::new("nowhere"), &mut vec![]));
     let (spec, _) = ast.and_then(|ast| check(&ast)).expect("is right");
@@ -158,4 +163,25 @@ fn the_least_speed_is_by_default_what_the_hall_timer_measures() {
     // Of 2000 rpm and four pole pairs: 2 % of it, and 60 degrees of 130 ms and of 32.5 ms.
     assert!((minimum("hall_timer_clock = \"500 kHz\"") - 40.0).abs() < 1e-9);
     assert!((minimum("hall_timer_clock = \"2 MHz\"") - 10.0 / (4.0 * 0.0325)).abs() < 1e-3);
+}
+
+#[test]
+fn an_amplifier_that_saturates_bounds_the_trip_level() {
+    const SHUNT: &str = "shunt = \"0.5 mohm\"\namplifier_gain = 20\nadc_reference = \"3.3 V\"\n";
+    let of_converter = with_lines(SHUNT);
+    // 1.35 V over 10 mV/A.
+    let swing = format!("{SHUNT}amplifier_swing = \"1.35 V\"\nmax_current = \"100 A\"");
+    let inverter = with_lines(&swing);
+    assert_eq!(inverter.sensors(), of_converter.sensors());
+    assert!(inverter.trip_current < 135.0, "{}", inverter.trip_current);
+    let told = |lines: &str| {
+        let text = COMPLETE.replace("adc_range = \"40 A\"", lines);
+        let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+        checked.expect_err("is in error").to_string()
+    };
+    let text = told(&format!("{swing}\ntrip_current = \"140 A\""));
+    assert!(text.contains("HX0306"), "{text}");
+    assert!(text.contains("measure up to 134.9 A only"), "{text}");
+    let text = told("adc_range = \"40 A\"\namplifier_swing = \"1.35 V\"");
+    assert!(text.contains("has an effect only with `shunt`"), "{text}");
 }

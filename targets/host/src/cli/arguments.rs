@@ -8,7 +8,7 @@ use crate::commands::{
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, option_help};
 use hexagen_lab::LabError;
-use hexagen_lab::engine::{Model, PlantOptions, Prepared, SelectedMotor, SetPoint};
+use hexagen_lab::engine::{Model, PerSensor, PlantOptions, Prepared, SelectedMotor, SetPoint};
 use hexagen_lab::plant::{PlantError, PlantParams};
 use std::str::FromStr;
 
@@ -146,11 +146,11 @@ pub struct PlantArguments {
     /// Offset error of the current ADCs, unknown to the controller: one current for all sensed
     /// phases, or one of each
     #[arg(long, value_name = "CURRENT", value_parser = quantity::adc_offset, allow_hyphen_values = true)]
-    pub adc_offset: Option<[f64; 3]>,
+    pub adc_offset: Option<PerSensor>,
     /// True over stated current per ADC count, unknown to the controller: one factor for all
     /// sensed phases, or one of each
     #[arg(long, value_name = "X", value_parser = quantity::adc_scale, allow_hyphen_values = true)]
-    pub scale_adc: Option<[f64; 3]>,
+    pub scale_adc: Option<PerSensor>,
     /// Gaussian noise of the current ADCs in counts rms, the same in every run
     #[arg(long, value_name = "COUNTS", value_parser = quantity::counts, allow_hyphen_values = true)]
     pub adc_noise: Option<f64>,
@@ -193,8 +193,8 @@ impl PlantArguments {
             dead_time: self.dead_time,
             adc_bits: self.adc_bits,
             adc_range: self.adc_range.clone(),
-            adc_offset: self.adc_offset,
-            scale_adc: self.scale_adc,
+            adc_offset: self.adc_offset.clone(),
+            scale_adc: self.scale_adc.clone(),
             adc_noise: self.adc_noise,
             conversion_time: self.conversion_time,
             v_bus: self.v_bus,
@@ -229,7 +229,9 @@ impl PlantArguments {
     fn option_of(&self, error: &LabError) -> Option<&'static str> {
         let name = match error {
             LabError::FreeShaft => "inertia",
-            LabError::Plant(PlantError::Range { name, .. }) => name,
+            LabError::Plant(PlantError::Range { name, .. } | PlantError::Sensors { name, .. }) => {
+                name
+            }
             _ => return None,
         };
         Some(match name {
@@ -239,6 +241,7 @@ impl PlantArguments {
             "inductance" if self.scale_l.is_some() => "--scale-l",
             "k_phase" if self.scale_kb.is_some() => "--scale-kb",
             "adc offset" if self.adc_offset.is_some() => "--adc-offset",
+            "adc scale" if self.scale_adc.is_some() => "--scale-adc",
             "adc noise" if self.adc_noise.is_some() => "--adc-noise",
             "adc instant" if self.conversion_time.is_some() => "--conversion-time",
             "hall_error_deg" if self.hall_error.is_some() => "--hall-error",

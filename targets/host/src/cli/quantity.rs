@@ -1,6 +1,7 @@
 //! Quantities on the command line: a number, with or without a unit.
 
 use hexagen_codegen::spec::units::{Dimension, Unit};
+use hexagen_lab::engine::PerSensor;
 
 /// A number with an optional unit of one dimension; without one it is in SI units (degrees for
 /// angles).
@@ -77,26 +78,23 @@ pub(super) fn current_text(text: &str) -> Result<String, String> {
 }
 
 /// Amperes of all channels or of each, `0.2A` or `0.2A,-0.1A`.
-pub(super) fn adc_offset(text: &str) -> Result<[f64; 3], String> {
-    per_channel(text, 0.0, |part| quantity(part, Dimension::Current))
+pub(super) fn adc_offset(text: &str) -> Result<PerSensor, String> {
+    per_sensor(text, |part| quantity(part, Dimension::Current))
 }
 
 /// Factors of all channels or of each, `1.01` or `1.01,0.99`.
-pub(super) fn adc_scale(text: &str) -> Result<[f64; 3], String> {
-    per_channel(text, 1.0, factor)
+pub(super) fn adc_scale(text: &str) -> Result<PerSensor, String> {
+    per_sensor(text, factor)
 }
 
-/// A value for all current channels, or one for each; a third that is not given is `sound`.
-fn per_channel(
+/// A value for all current sensors, or one for each.
+fn per_sensor(
     text: &str,
-    sound: f64,
     parse: impl Fn(&str) -> Result<f64, String>,
-) -> Result<[f64; 3], String> {
+) -> Result<PerSensor, String> {
     let list = text.split(',').map(parse).collect::<Result<Vec<_>, _>>()?;
-    match list[..] {
-        [all] => Ok([all; 3]),
-        [first, second] => Ok([first, second, sound]),
-        [first, second, third] => Ok([first, second, third]),
+    match list.len() {
+        1..=3 => Ok(PerSensor(list)),
         _ => Err("give one value for all sensed phases, or one of each".to_owned()),
     }
 }
@@ -167,10 +165,9 @@ mod tests {
         assert_eq!(radians("180deg"), Ok(std::f64::consts::PI));
         assert_eq!(hall_error("5deg"), Ok([5.0; 3]));
         assert_eq!(hall_error("5deg,-3,0"), Ok([5.0, -3.0, 0.0]));
-        assert_eq!(adc_offset("200mA"), Ok([0.2; 3]));
-        assert_eq!(adc_offset("0.2A,-1"), Ok([0.2, -1.0, 0.0]));
-        assert_eq!(adc_scale("1.1,0.9,1.2"), Ok([1.1, 0.9, 1.2]));
-        assert_eq!(adc_scale("1.01,0.99"), Ok([1.01, 0.99, 1.0]));
+        assert_eq!(adc_offset("200mA"), Ok(PerSensor(vec![0.2])));
+        assert_eq!(adc_offset("0.2A,-1"), Ok(PerSensor(vec![0.2, -1.0])));
+        assert_eq!(adc_scale("1.1,0.9,1.2"), Ok(PerSensor(vec![1.1, 0.9, 1.2])));
         assert_eq!(counts("1.5 counts"), Ok(1.5));
     }
 

@@ -137,6 +137,11 @@ const INVERTER: &[Line] = &[
         "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB.",
         "40 A",
     ),
+    needed(
+        &["current_sensing"],
+        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches).",
+        "in_phase",
+    ),
     needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
     needed(
         &["hall_timer_clock"],

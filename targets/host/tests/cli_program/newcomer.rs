@@ -21,11 +21,12 @@ const EC_45: [&str; 14] = [
     "bus_voltage=24 V",
     "timer_clock=170 MHz",
     "adc_range=8 A",
+    "current_sensing=in_phase",
     "dead_time=500 ns",
 ];
 
 /// Teknic's Hudson M-2311P on 48 V.
-const HUDSON: [&str; 11] = [
+const HUDSON: [&str; 12] = [
     "poles=8",
     "resistance=0.69 ohms phase-to-phase",
     "inductance=0.733 mH phase-to-phase",
@@ -37,10 +38,11 @@ const HUDSON: [&str; 11] = [
     "bus_voltage=48 V",
     "timer_clock=72 MHz",
     "adc_range=20 A",
+    "current_sensing=in_phase",
 ];
 
 /// A hub motor of a balancing board, by its kV rating, on 36 V.
-const HUB: [&str; 10] = [
+const HUB: [&str; 11] = [
     "poles=30",
     "resistance=0.4 ohm terminal",
     "inductance=0.6 mH terminal",
@@ -51,6 +53,7 @@ const HUB: [&str; 10] = [
     "bus_voltage=36 V",
     "timer_clock=72 MHz",
     "adc_range=30 A",
+    "current_sensing=in_phase",
 ];
 
 #[test]

@@ -17,7 +17,7 @@ pub use external::BuildError;
 pub use motor::{MotorSource, SourceError};
 pub use plant::{plant_of, reach_of, run_of};
 pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
-pub use selected::{PlantOptions, SelectedMotor};
+pub use selected::{PerSensor, PlantOptions, SelectedMotor};
 pub use verifier::Verifier;
 
 use crate::Interpreted;

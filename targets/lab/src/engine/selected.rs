@@ -10,6 +10,28 @@ use hexagen_codegen::spec::{Board, SpecAst, motor_text, parse_board, parse_toml}
 use std::f64::consts::TAU;
 use std::path::Path;
 
+/// A value of every current sensor: one for all, or one of each in the order of the sensed phases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerSensor(pub Vec<f64>);
+
+impl PerSensor {
+    /// The value of each of `count` sensors. `name`: of the quantity, for the error.
+    ///
+    /// # Errors
+    /// Neither one value nor as many as there are sensors.
+    pub fn of(&self, name: &'static str, count: usize) -> Result<Vec<f64>, PlantError> {
+        match self.0[..] {
+            [all] => Ok(vec![all; count]),
+            _ if self.0.len() == count => Ok(self.0.clone()),
+            _ => Err(PlantError::Sensors {
+                name,
+                given: self.0.len(),
+                sensors: count,
+            }),
+        }
+    }
+}
+
 /// Deviations of a simulated plant from the motor's file; none by default.
 #[derive(Clone, Debug, Default)]
 pub struct PlantOptions {
@@ -22,9 +44,9 @@ pub struct PlantOptions {
     /// Range of the current ADCs with its unit, of plant and controller: the specification changes.
     pub adc_range: Option<String>,
     /// Zero error of the current ADCs in amperes, unknown to the controller.
-    pub adc_offset: Option<[f64; 3]>,
-    /// True over stated current per ADC count, in the order of the sensed phases.
-    pub scale_adc: Option<[f64; 3]>,
+    pub adc_offset: Option<PerSensor>,
+    /// True over stated current per ADC count.
+    pub scale_adc: Option<PerSensor>,
     /// Noise of the current ADCs in counts rms.
     pub adc_noise: Option<f64>,
     /// Time in seconds from the first current's sample to the second's.
@@ -194,14 +216,15 @@ impl PlantOptions {
         );
         plant.dead_time = self.dead_time.unwrap_or(plant.dead_time);
         plant.v_bus = self.v_bus.unwrap_or(plant.v_bus);
-        for (channel, error) in plant
-            .adc
-            .iter_mut()
-            .zip(self.adc_offset.unwrap_or([0.0; 3]))
-        {
-            channel.offset += error / channel.amperes_per_count;
+        let count = plant.adc.len();
+        if let Some(offset) = &self.adc_offset {
+            for (channel, error) in plant.adc.iter_mut().zip(offset.of("adc offset", count)?) {
+                channel.offset += error / channel.amperes_per_count;
+            }
         }
-        plant.scale_adc(self.scale_adc.unwrap_or([1.0; 3]));
+        if let Some(scale) = &self.scale_adc {
+            plant.scale_adc(&scale.of("adc scale", count)?);
+        }
         for channel in &mut plant.adc {
             channel.noise = self.adc_noise.unwrap_or(channel.noise);
         }

@@ -154,7 +154,7 @@ impl PlantDefect {
                 let most = MOST_DEAD_TIME * plant.pwm_period();
                 plant.dead_time = plant.dead_time.max((plant.dead_time + more).min(most));
             }
-            Self::AdcScale(scales) => plant.scale_adc(scales),
+            Self::AdcScale(scales) => plant.scale_adc(&scales),
             Self::AdcNoise { rms } => {
                 for channel in &mut plant.adc {
                     channel.noise = rms;

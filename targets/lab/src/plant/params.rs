@@ -175,6 +175,18 @@ pub enum PlantError {
         /// The range that is allowed.
         limit: String,
     },
+    /// A quantity of the current sensors has not one value of each.
+    #[error(
+        "plant: {given} values of the {name}, but there are {sensors} current sensors; give one for all, or one of each"
+    )]
+    Sensors {
+        /// Name of the quantity.
+        name: &'static str,
+        /// How many values were given.
+        given: usize,
+        /// How many sensors there are.
+        sensors: usize,
+    },
 }
 
 /// PWM periods in a control period that no file tells.
@@ -238,7 +250,7 @@ impl PlantParams {
     }
 
     /// Scales the true current per ADC count of all channels, unknown to the controller.
-    pub fn scale_adc(&mut self, scales: [f64; 3]) {
+    pub fn scale_adc(&mut self, scales: &[f64]) {
         for (channel, scale) in self.adc.iter_mut().zip(scales) {
             channel.amperes_per_count *= scale;
         }

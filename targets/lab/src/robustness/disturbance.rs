@@ -1,6 +1,6 @@
 //! The disturbances of the robustness sheet, as changes of the plant options.
 
-use crate::engine::PlantOptions;
+use crate::engine::{PerSensor, PlantOptions};
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::InverterSpec;
 
@@ -45,6 +45,11 @@ pub struct Disturbance {
     pub plant: PlantOptions,
 }
 
+/// The sensors' values of an undisturbed plant: one for all, or one of each.
+fn known_of_sensors(known: Option<&PerSensor>, sound: f64) -> Vec<f64> {
+    known.map_or_else(|| vec![sound], |known| known.0.clone())
+}
+
 /// The undisturbed plant, then every disturbance. `inverter` is that of the drives on the
 /// undisturbed plant.
 pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<Disturbance> {
@@ -86,13 +91,19 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
         let name = format!("{bits}-bit ADC, {} off", engineering(offset, "A"));
         add(&name, &|plant| {
             plant.adc_bits = Some(bits);
-            let known = plant.adc_offset.unwrap_or([0.0; 3]);
-            plant.adc_offset = Some(known.map(|known| known + offset));
+            let known = known_of_sensors(plant.adc_offset.as_ref(), 0.0);
+            plant.adc_offset = Some(PerSensor(
+                known.iter().map(|known| known + offset).collect(),
+            ));
         });
     }
     add("current sensors 2 % apart", &|plant| {
-        let known = plant.scale_adc.unwrap_or([1.0; 3]);
-        plant.scale_adc = Some(std::array::from_fn(|x| known[x] * ADC_SCALE[x]));
+        let known = known_of_sensors(plant.scale_adc.as_ref(), 1.0);
+        let apart = ADC_SCALE.iter().take(inverter.sensors().len());
+        let scales = apart.zip(known.iter().cycle());
+        plant.scale_adc = Some(PerSensor(
+            scales.map(|(apart, known)| apart * known).collect(),
+        ));
     });
     add("ADC noise 1 count rms", &|plant| {
         plant.adc_noise = Some(plant.adc_noise.unwrap_or(0.0).hypot(ADC_NOISE));

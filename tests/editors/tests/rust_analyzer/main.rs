@@ -27,7 +27,7 @@ hexagen::controller! {
         },
         inverter: {
             bus_voltage: 48 V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12, adc_range: 40 A,
-            hall_timer_clock: 1 MHz,
+            current_sensing: in_phase, hall_timer_clock: 1 MHz,
         },
         controller: fcs-mpc { emf: model, off_leg: nominal },
     }
