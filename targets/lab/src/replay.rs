@@ -3,49 +3,17 @@
 
 use crate::Interpreted;
 use crate::engine::Prepared;
+use crate::log::{LogError, LogRow, rows};
 use hexagen::{Command, Legs, Sample};
 use hexagen_codegen::interface::Unit;
 use hexagen_codegen::ir::{Phase, Told, Value};
 use hexagen_codegen::spec::HallCapture;
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
-use serde::Deserialize;
 use std::io::{Read, Write};
 
 /// Bits of a set-point's fraction.
 const FRACTION: f64 = 65_536.0;
-
-/// One period of a log, a row of CSV: what the program passed to the drive. An empty set-point leaves the
-/// last one.
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LogRow {
-    /// ADC count of the first sensed phase.
-    pub adc_1: u16,
-    /// Of the second.
-    pub adc_2: u16,
-    /// Of the third, with `sensed_phases: abc` only.
-    pub adc_3: Option<u16>,
-    /// Hall code, Ha in bit 2.
-    pub hall: u8,
-    /// Ticks since the last edge, with an edge timer only.
-    pub ticks: Option<u16>,
-    /// Current set-point, ampere.
-    pub current_a: Option<f64>,
-    /// Torque set-point, newton metres.
-    pub torque_nm: Option<f64>,
-    /// Speed set-point, rpm.
-    pub speed_rpm: Option<f64>,
-    /// ADC count of the bus voltage.
-    pub bus: Option<u16>,
-    /// A call before the step: `calibrate`, `precharge`, `reset`, `coast`, `brake` or `resume`.
-    pub call: Option<String>,
-}
-
-/// What is wrong with a log, with its line; or why a result cannot be written.
-#[derive(Clone, Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct LogError(String);
 
 /// Rows of a log that were replayed, and what became of the drive.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,10 +37,9 @@ pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Repla
         periods: 0,
         fault: None,
     };
-    for (period, row) in csv::Reader::from_reader(log).deserialize().enumerate() {
-        let row: LogRow = row?;
-        // The header is line 1.
-        let at = |what: String| LogError(format!("line {}: {what}", period + 2));
+    for (period, row) in rows(log).enumerate() {
+        let row = row?;
+        let at = |what: String| LogError::in_period(period, &what);
         let sample = sample(drive, &row).map_err(at)?;
         give(&mut subject, &row).map_err(at)?;
         let legs = subject.step(&sample);
@@ -84,50 +51,22 @@ pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Repla
     }
     writer.flush().map_err(csv::Error::from)?;
     if replayed.periods == 0 {
-        return Err(LogError(
-            "no periods; give a header and a row per period".to_owned(),
-        ));
+        return Err(LogError::empty());
     }
     Ok(replayed)
-}
-
-impl From<csv::Error> for LogError {
-    fn from(error: csv::Error) -> Self {
-        Self(error.to_string())
-    }
 }
 
 /// The sample of a row.
 fn sample(drive: &Prepared, row: &LogRow) -> Result<Sample, String> {
     let inverter = &drive.spec.inverter;
-    let most = inverter.adc_max();
-    let counts = [Some(row.adc_1), Some(row.adc_2), row.adc_3];
-    for (count, name) in counts.iter().flatten().zip(["adc_1", "adc_2", "adc_3"]) {
-        if u32::from(*count) > most {
-            return Err(format!(
-                "`{name}`: {count} is above {most}, the largest count of {} bits",
-                inverter.adc_bits
-            ));
-        }
+    row.check(inverter)?;
+    // A phase without a sensor has no count.
+    let mut adc = [0; 3];
+    for (phase, count) in inverter.sensed_phases.phases().iter().zip(row.counts()) {
+        adc[*phase] = count;
     }
-    if row.hall > 7 {
-        return Err(format!(
-            "`hall`: {} is no code of three sensors; give 0 to 7",
-            row.hall
-        ));
-    }
-    let mut sample = Sample::with_hall([row.adc_1, row.adc_2], row.hall);
-    let phases = inverter.sensed_phases.phases().len();
-    match (phases, row.adc_3) {
-        (3, Some(count)) => sample = sample.third_current(count),
-        (3, None) => {
-            return Err("`adc_3` is missing: the drive has three current sensors".to_owned());
-        }
-        (_, Some(_)) => {
-            return Err("`adc_3`: the drive has two current sensors; leave it out".to_owned());
-        }
-        (_, None) => {}
-    }
+    let [adc_a, adc_b, adc_c] = adc;
+    let mut sample = Sample::with_hall([adc_a, adc_b], row.hall).third_current(adc_c);
     match (inverter.hall_capture, row.ticks) {
         (HallCapture::Timer { .. }, Some(ticks)) => sample = sample.hall_ticks(ticks),
         (HallCapture::Timer { .. }, None) => {

@@ -25,21 +25,17 @@ fn logged(drive: &Prepared) -> (String, Vec<Legs>) {
     let omega_m = 0.5 * drive.spec.motor.rated_speed;
     let mut plant = Plant::new(plant_of(&drive.spec), 0.117, omega_m).expect("a plant");
     let mut engine = drive.interpreted();
-    let (sensors, has_timer) = (
-        drive.spec.inverter.sensed_phases.phases().len(),
-        drive.generated.interface.timer_capture,
-    );
-    let third = if sensors == 3 { "adc_3," } else { "" };
+    let sensed = drive.spec.inverter.sensed_phases.phases();
+    let has_timer = drive.generated.interface.timer_capture;
+    let third = if sensed.len() == 3 { "adc_3," } else { "" };
     let ticks = if has_timer { "ticks," } else { "" };
     let mut log = format!("adc_1,adc_2,{third}hall,{ticks}current_a\n");
     let mut pending = Legs::OFF;
     let mut commands = Vec::new();
     for period in 0..PERIODS {
         let sample = plant.sample(pending);
-        let [a, b, c] = sample.adc();
-        let _ = write!(log, "{a},{b},");
-        if sensors == 3 {
-            let _ = write!(log, "{c},");
+        for phase in sensed {
+            let _ = write!(log, "{},", sample.adc()[*phase]);
         }
         let _ = write!(log, "{},", sample.hall());
         if has_timer {
@@ -77,6 +73,8 @@ fn a_replayed_log_has_the_commands_and_words_of_the_run() {
         ("trivedi-keshri-660w", None, "phcc"),
         ("hoverboard-hub", None, "pi-pwm"),
         ("anaheim-bly172s", Some("st-b-g431b-esc1"), "pdcc"),
+        // Sensors in phases b and c.
+        ("odrive-d6374-150kv", None, "pdcc"),
     ] {
         let drive = drive(motor, board, variant);
         let (log, commands) = logged(&drive);

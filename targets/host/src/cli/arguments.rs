@@ -2,8 +2,8 @@
 
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
-    boards, check, compare, completions, explain, faults, generate, limit, motors, new, prove,
-    replay, report, reproduce, simulate, verify,
+    boards, check, compare, completions, explain, faults, generate, halls, limit, motors, new,
+    prove, replay, report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{KINDS, option_help};
@@ -46,6 +46,8 @@ pub enum Command {
     Faults(faults::Options),
     /// Prints every word of a drive from a log of its samples and set-points
     Replay(replay::Options),
+    /// Finds the Hall sensors' codes and places from a log of the shorted motor turned by hand
+    Halls(halls::Options),
     /// Compares generated code with the bit-true reference, bit for bit
     Verify(verify::Options),
     /// Proves the absence of overflow and the error bounds with Gappa
@@ -66,6 +68,42 @@ pub enum Command {
     Explain(explain::Options),
     /// Prints a script that completes the command line in a shell
     Completions(completions::Options),
+}
+
+/// A motor, its board and a controller.
+#[derive(Args, Clone, Debug)]
+pub struct DriveArguments {
+    /// Motor file, or name of a library motor
+    #[arg(value_name = "MOTOR")]
+    pub motor: String,
+    /// Board, a name of the library or a file [default: the motor file's]
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
+    /// Controller variant [default: the motor file's]
+    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
+    pub controller: Option<String>,
+}
+
+impl DriveArguments {
+    /// The motor on its board.
+    ///
+    /// # Errors
+    /// Diagnostics, or a name that is not in the library.
+    pub fn select(&self) -> Result<SelectedMotor, LabError> {
+        let on_board = PlantOptions {
+            board: self.board.clone(),
+            ..PlantOptions::default()
+        };
+        SelectedMotor::find(&self.motor, &on_board)
+    }
+
+    /// The drive.
+    ///
+    /// # Errors
+    /// As [`Self::select`].
+    pub fn prepare(&self) -> Result<Prepared, LabError> {
+        self.select()?.prepare(self.controller.as_deref())
+    }
 }
 
 /// What `generate` prints.

@@ -10,7 +10,9 @@ mod output;
 mod progress;
 mod quantity;
 
-pub use arguments::{Arguments, Command, Emit, PlantArguments, RunArguments, Selection, parse_rpm};
+pub use arguments::{
+    Arguments, Command, DriveArguments, Emit, PlantArguments, RunArguments, Selection, parse_rpm,
+};
 pub use failure::Failure;
 pub use output::{
     note, print_blocks, print_json, print_table, print_text, shortened, tell_warnings, warn,
@@ -46,6 +48,7 @@ pub fn run() -> ExitCode {
         Command::Limit(options) => commands::limit::run(&options),
         Command::Faults(options) => commands::faults::run(&options),
         Command::Replay(options) => commands::replay::run(&options),
+        Command::Halls(options) => commands::halls::run(&options),
         Command::Verify(options) => commands::verify::run(&options),
         Command::Prove(options) => commands::prove::run(&options),
         Command::Compare(options) => commands::compare::run(&options),

@@ -3,28 +3,22 @@
 //! The drive is designed and verified as for generation, and runs on the simulated motor at two
 //! speeds from one start each; `report` compares, measures and plots.
 
-use crate::cli::{Failure, print_json, print_text, shortened, tell_warnings};
+use crate::cli::{DriveArguments, Failure, print_json, print_text, shortened, tell_warnings};
 use clap::Args;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{CurrentSensing, HallCapture, Reference, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
-use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
+use hexagen_lab::engine::Prepared;
 use hexagen_lab::text::significant;
 use serde::Serialize;
 
 /// Options of `check`.
 #[derive(Args, Clone, Debug)]
 pub struct Options {
-    /// Motor file, or name of a library motor
-    #[arg(value_name = "MOTOR")]
-    pub motor: String,
-    /// Board, a name of the library or a file [default: the motor file's]
-    #[arg(long, value_name = "BOARD")]
-    pub board: Option<String>,
-    /// Controller variant [default: the motor file's]
-    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
-    pub controller: Option<String>,
+    /// What is checked.
+    #[command(flatten)]
+    pub drive: DriveArguments,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -93,20 +87,18 @@ pub struct Checked {
 /// # Errors
 /// All diagnostics; a drive that does not work.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let on_board = PlantOptions {
-        board: options.board.clone(),
-        ..PlantOptions::default()
-    };
-    let motor = SelectedMotor::find(&options.motor, &on_board)?;
-    let drive = motor.prepare_for_torque(options.controller.as_deref())?;
+    let asked = &options.drive;
+    let drive = asked
+        .select()?
+        .prepare_for_torque(asked.controller.as_deref())?;
     let checked = Checked::of(&drive)?;
     if options.json {
         print_json(&checked)?;
     } else {
         tell_warnings(&drive);
-        let next = match &options.board {
-            Some(board) => format!("hexagen simulate {} --board {board}", options.motor),
-            None => format!("hexagen report {}", options.motor),
+        let next = match &asked.board {
+            Some(board) => format!("hexagen simulate {} --board {board}", asked.motor),
+            None => format!("hexagen report {}", asked.motor),
         };
         print_text(&checked.lines(&drive, &next).join("\n"))?;
     }

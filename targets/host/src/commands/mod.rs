@@ -10,6 +10,7 @@ pub mod completions;
 pub mod explain;
 pub mod faults;
 pub mod generate;
+pub mod halls;
 pub mod limit;
 pub mod motors;
 pub mod new;

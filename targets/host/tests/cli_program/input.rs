@@ -293,8 +293,8 @@ fn help_and_version_are_no_errors() {
     let help = run(["--help"]);
     assert_eq!((help.code, help.stderr.as_str()), (0, ""));
     for command in [
-        "report", "generate", "simulate", "limit", "faults", "replay", "verify", "compare",
-        "motors",
+        "report", "generate", "simulate", "limit", "faults", "replay", "halls", "verify",
+        "compare", "motors",
     ] {
         assert!(help.stdout.contains(command), "{command}");
         assert_eq!(run([command, "--help"]).code, 0);

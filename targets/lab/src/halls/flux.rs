@@ -1,0 +1,142 @@
+//! The flux linkage of a shorted motor, from its currents.
+//!
+//! Terminals tied together hold `0 = R i + L di/dt + e`. So the integral of the EMF is
+//! `psi = -(integral of R i) - L i`: on a circle around a fixed centre, at the rotor's angle, whatever the speed.
+
+use super::Reading;
+use crate::plant::clarke;
+use hexagen_codegen::spec::Spec;
+use std::f64::consts::TAU;
+
+/// A vector in the stationary plane.
+pub(super) type Vector = [f64; 2];
+
+/// Share of the circle's width between two points that count for its shape: points are then even along it, and
+/// those of a rotor that stands count once.
+const STEP: f64 = 0.03;
+
+/// Phase currents of a sample as a vector, ampere, with the stated gains and offsets.
+pub(super) fn current(spec: &Spec, counts: impl Iterator<Item = u16>) -> Vector {
+    let sensed = spec.inverter.sensed_phases.phases();
+    let mut currents = [None; 3];
+    for ((phase, sensor), count) in sensed.iter().zip(spec.inverter.sensors()).zip(counts) {
+        currents[*phase] = Some(sensor.gain * (f64::from(count) - f64::from(sensor.offset)));
+    }
+    let rest: f64 = -currents.iter().flatten().sum::<f64>();
+    let (alpha, beta) = clarke(currents.map(|current| current.unwrap_or(rest)));
+    [alpha, beta]
+}
+
+/// The flux linkage at each reading up to a constant, and up to a drift by the sensors' offsets.
+pub(super) fn integrated(spec: &Spec, readings: &[Reading]) -> Vec<Vector> {
+    let (r_ts, l) = (
+        spec.motor.resistance * spec.inverter.t_s,
+        spec.motor.inductance,
+    );
+    let mut charge = [0.0; 2];
+    let mut before: Option<Vector> = None;
+    let integral = readings.iter().map(|Reading { current, .. }| {
+        // By the trapezoidal rule.
+        let before = before.replace(*current).unwrap_or(*current);
+        for x in 0..2 {
+            charge[x] += r_ts * 0.5 * (before[x] + current[x]);
+        }
+        std::array::from_fn(|x| -charge[x] - l * current[x])
+    });
+    integral.collect()
+}
+
+/// Takes a drift off: two readings at one angle have one flux linkage. `same`: pairs of such readings.
+///
+/// What an offset adds grows with time, so a pair counts by its distance, squared in the fit.
+pub(super) fn without_drift(flux: &mut [Vector], same: &[[usize; 2]]) {
+    let distance = |[first, last]: &[usize; 2]| (last - first) as f64;
+    let weight: f64 = same.iter().map(|pair| distance(pair).powi(2)).sum();
+    if weight == 0.0 {
+        return;
+    }
+    for x in 0..2 {
+        let moved = |pair: &[usize; 2]| flux[pair[1]][x] - flux[pair[0]][x];
+        let slope = same
+            .iter()
+            .map(|pair| moved(pair) * distance(pair))
+            .sum::<f64>()
+            / weight;
+        for (place, point) in flux.iter_mut().enumerate() {
+            point[x] -= slope * place as f64;
+        }
+    }
+}
+
+/// The circle on which the flux linkage turns.
+pub(super) struct Circle {
+    centre: Vector,
+    /// Volt-second.
+    pub radius: f64,
+    /// Its narrowest width over its widest: 1 for sound sensors.
+    pub roundness: f64,
+    /// Readings that are apart on it.
+    pub apart: Vec<usize>,
+}
+
+impl Circle {
+    /// The circle nearest to the points, by the least squares of Kasa; none where they do not surround anything.
+    pub fn of(flux: &[Vector]) -> Option<Self> {
+        let apart = apart(flux);
+        let count = apart.len() as f64;
+        let points = || apart.iter().map(|place| flux[*place]);
+        let mean: Vector =
+            std::array::from_fn(|x| points().map(|point| point[x]).sum::<f64>() / count);
+        let about = |point: Vector| [point[0] - mean[0], point[1] - mean[1]];
+        let moment =
+            |f: &dyn Fn(Vector) -> f64| points().map(|point| f(about(point))).sum::<f64>() / count;
+        let (xx, yy, xy) = (
+            moment(&|[x, _]| x * x),
+            moment(&|[_, y]| y * y),
+            moment(&|[x, y]| x * y),
+        );
+        let cubic = [0, 1].map(|own| moment(&|v: Vector| v[own] * (v[0] * v[0] + v[1] * v[1])));
+        let determinant = xx * yy - xy * xy;
+        if apart.len() < 12 || determinant <= 0.0 {
+            return None;
+        }
+        let own = [
+            0.5 * (cubic[0] * yy - cubic[1] * xy) / determinant,
+            0.5 * (cubic[1] * xx - cubic[0] * xy) / determinant,
+        ];
+        // Principal axes of the points.
+        let (sum, difference) = (xx + yy, (xx - yy).hypot(2.0 * xy));
+        Some(Self {
+            centre: [mean[0] + own[0], mean[1] + own[1]],
+            radius: (own[0] * own[0] + own[1] * own[1] + xx + yy).sqrt(),
+            roundness: ((sum - difference).max(0.0) / (sum + difference)).sqrt(),
+            apart,
+        })
+    }
+
+    /// The rotor's electrical angle, radians: the EMF `sin(theta)` of phase a has the integral `-cos(theta)`.
+    pub fn angle(&self, [alpha, beta]: Vector) -> f64 {
+        (self.centre[1] - beta)
+            .atan2(self.centre[0] - alpha)
+            .rem_euclid(TAU)
+    }
+}
+
+/// The first of the points, and each that is a step away from the one before.
+fn apart(flux: &[Vector]) -> Vec<usize> {
+    let extent = |x: usize| {
+        let all = || flux.iter().map(|point| point[x]);
+        all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+    };
+    let step = STEP * extent(0).max(extent(1));
+    let mut last: Option<Vector> = None;
+    let is_apart = |place: &usize| {
+        let [x, y] = flux[*place];
+        let is_far = last.is_none_or(|[last_x, last_y]| (x - last_x).hypot(y - last_y) > step);
+        if is_far {
+            last = Some([x, y]);
+        }
+        is_far
+    };
+    (0..flux.len()).filter(is_apart).collect()
+}

@@ -1,0 +1,95 @@
+//! A log of what a program passed to its drive: one row of CSV for each control period.
+
+use hexagen_codegen::spec::InverterSpec;
+use serde::Deserialize;
+use std::io::Read;
+
+/// One period of a log, a row of CSV: what the program passed to the drive. An empty set-point leaves the
+/// last one.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogRow {
+    /// ADC count of the first sensed phase.
+    pub adc_1: u16,
+    /// Of the second.
+    pub adc_2: u16,
+    /// Of the third, with `sensed_phases: abc` only.
+    pub adc_3: Option<u16>,
+    /// Hall code, Ha in bit 2.
+    pub hall: u8,
+    /// Ticks since the last edge, with an edge timer only.
+    pub ticks: Option<u16>,
+    /// Current set-point, ampere.
+    pub current_a: Option<f64>,
+    /// Torque set-point, newton metres.
+    pub torque_nm: Option<f64>,
+    /// Speed set-point, rpm.
+    pub speed_rpm: Option<f64>,
+    /// ADC count of the bus voltage.
+    pub bus: Option<u16>,
+    /// A call before the step: `calibrate`, `precharge`, `reset`, `coast`, `brake` or `resume`.
+    pub call: Option<String>,
+}
+
+/// What is wrong with a log, with its line; or why a result cannot be written.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct LogError(pub(crate) String);
+
+impl LogError {
+    /// What is wrong in a period, from 0; its line is told.
+    pub(crate) fn in_period(period: usize, what: &str) -> Self {
+        // The header is line 1.
+        Self(format!("line {}: {what}", period + 2))
+    }
+
+    /// A log without periods.
+    pub(crate) fn empty() -> Self {
+        Self("no periods; give a header and a row per period".to_owned())
+    }
+}
+
+impl From<csv::Error> for LogError {
+    fn from(error: csv::Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
+/// The rows of a log.
+pub(crate) fn rows(log: impl Read) -> impl Iterator<Item = Result<LogRow, LogError>> {
+    let rows = csv::Reader::from_reader(log).into_deserialize();
+    rows.map(|row| row.map_err(LogError::from))
+}
+
+impl LogRow {
+    /// Counts in the order of the sensed phases.
+    pub(crate) fn counts(&self) -> impl Iterator<Item = u16> + use<> {
+        [self.adc_1, self.adc_2].into_iter().chain(self.adc_3)
+    }
+
+    /// Checks counts and Hall code against the sensors.
+    pub(crate) fn check(&self, inverter: &InverterSpec) -> Result<(), String> {
+        let most = inverter.adc_max();
+        for (count, name) in self.counts().zip(["adc_1", "adc_2", "adc_3"]) {
+            if u32::from(count) > most {
+                return Err(format!(
+                    "`{name}`: {count} is above {most}, the largest count of {} bits",
+                    inverter.adc_bits
+                ));
+            }
+        }
+        if self.hall > 7 {
+            return Err(format!(
+                "`hall`: {} is no code of three sensors; give 0 to 7",
+                self.hall
+            ));
+        }
+        match (inverter.sensed_phases.phases().len(), self.adc_3) {
+            (3, None) => Err("`adc_3` is missing: the drive has three current sensors".to_owned()),
+            (2, Some(_)) => {
+                Err("`adc_3`: the drive has two current sensors; leave it out".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+}
