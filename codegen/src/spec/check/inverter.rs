@@ -344,7 +344,7 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
     }
     let inverted = inverted?.unwrap_or_else(|| vec![0; count]);
     let Gains {
-        gains,
+        each: gains,
         linear,
         part,
     } = gains?;
@@ -384,7 +384,7 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
 /// What currents the sensors show.
 struct Gains {
     /// Ampere per count of each sensor, positive.
-    gains: Vec<f64>,
+    each: Vec<f64>,
     /// Greatest current of either sign that the amplifiers show, ampere; none by themselves is infinite.
     linear: f64,
     /// `adc_range`, `adc_gain` or `shunt` as written.
@@ -418,12 +418,12 @@ fn read_gains(
                 one.plain_quantity(errors, "adc_gain").map(|given| given.si)
             })
         });
-        let (gains, part) = match range {
+        let (each, part) = match range {
             Some(range) => (all(2.0 * range.si / counts), range.part),
             None => (stated?, reader.part("adc_gain", String::new)),
         };
         return Some(Gains {
-            gains,
+            each,
             linear: f64::INFINITY,
             part,
         });
@@ -446,7 +446,7 @@ fn read_gains(
     // Volt at the converter per ampere.
     let sensitivity = ohm.si * amplified.si;
     Some(Gains {
-        gains: all(volt.si / (counts * sensitivity)),
+        each: all(volt.si / (counts * sensitivity)),
         linear: swing.map_or(f64::INFINITY, |swing| swing.si / sensitivity),
         part: ohm.part,
     })

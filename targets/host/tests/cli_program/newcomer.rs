@@ -7,7 +7,7 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 /// Maxon's EC 45 flat of 70 W on a board of 8 A, as its catalogue words it.
-const EC_45: [&str; 14] = [
+const EC_45: [&str; 15] = [
     "pole_pairs=8",
     "resistance=0.573 ohm phase to phase",
     "inductance=0.301 mH phase to phase",

@@ -250,11 +250,18 @@ fn codes(readings: &[Reading], angles: &[f64], apart: &[usize]) -> Result<[u8; 6
 /// Which sensors never change, as a clause.
 fn stuck(codes: &[u8]) -> String {
     let never = |bit: u8| codes.windows(2).all(|pair| (pair[0] ^ pair[1]) & bit == 0);
-    [("Ha", 4), ("Hb", 2), ("Hc", 1)]
+    let names: Vec<&str> = [("Ha", 4), ("Hb", 2), ("Hc", 1)]
         .into_iter()
         .filter(|(_, bit)| never(*bit))
-        .map(|(name, _)| format!("; {name} never changes: look at its wire, supply and pull-up"))
-        .collect()
+        .map(|(name, _)| name)
+        .collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "; never changing: {}; look at wire, supply and pull-up",
+        names.join(", ")
+    )
 }
 
 /// Codes in binary.
