@@ -1,16 +1,18 @@
 //! `hexagen new`: a commented motor file, from `FIELD=VALUE` arguments or from questions.
 //!
 //! On a terminal every field that has no default is asked for, unless it was given; elsewhere such a
-//! field stands in the file to be filled in. The file is checked before it is written.
+//! field stands in the file to be filled in. On a board the inverter's fields that it states are left out.
+//! The file is checked before it is written.
 
 use crate::cli::{Failure, note, print_json, print_text};
 use crate::files::write_new;
 use clap::Args;
 use hexagen_codegen::diagnostics::Code;
-use hexagen_codegen::spec::{check, parse_toml, section_of};
+use hexagen_codegen::spec::{BOARDS, check, parse_toml, section_of};
+use hexagen_lab::LabError;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::{BufRead, IsTerminal, Write};
+use std::io::{BufRead, IsTerminal, Lines, StdinLock, Write};
 use std::path::{Path, PathBuf};
 
 /// Options of `new`.
@@ -19,7 +21,9 @@ pub struct Options {
     /// The file to make, such as motors/hub.toml
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Values as the data sheet states them, such as `poles=16` or `"resistance=0.57 ohm terminal"`
+    /// Values as the data sheet states them, such as `poles=16` or `"resistance=0.57 ohm terminal"`;
+    /// `board=vesc-4` takes the inverter from a board of the library, or from a file whose path is
+    /// relative to the new one
     #[arg(value_name = "FIELD=VALUE")]
     pub values: Vec<String>,
     /// Replace the file if it is there
@@ -133,8 +137,9 @@ const INVERTER: &[Line] = &[
     ),
     needed(&["adc_bits"], "Bits of the phase-current ADCs.", "12").or("12"),
     needed(
-        &["adc_range", "adc_gain"],
-        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB.",
+        &["adc_range", "adc_gain", "shunt"],
+        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB; or shunt with\n\
+         # amplifier_gain and adc_reference.",
         "40 A",
     ),
     needed(
@@ -164,6 +169,9 @@ const SECTIONS: [(&str, &[Line]); 3] = [
     ("controller", CONTROLLER),
 ];
 
+/// The value that names a board; it stands above the sections.
+const BOARD: &str = "board";
+
 #[derive(Serialize)]
 struct Made {
     file: PathBuf,
@@ -177,12 +185,12 @@ struct Made {
 /// A value in error; a file that is there, or cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
     refuse_present(&options.file, options.force)?;
-    let mut values = given(&options.values)?;
+    let mut draft = Draft::of(given(&options.values)?, &options.file)?;
     if !options.json && std::io::stdin().is_terminal() {
-        ask(&mut values)?;
+        draft.ask(&options.file)?;
     }
-    let missing = missing(&values);
-    let text = text(&values);
+    let missing = draft.missing();
+    let text = draft.text();
     checked(&text, &options.file, missing.is_empty())?;
     write_new(&options.file, text.as_bytes(), options.force).map_err(|error| Failure::Write {
         path: options.file.clone(),
@@ -238,54 +246,158 @@ fn given(arguments: &[String]) -> Result<Values, Failure> {
     Ok(values)
 }
 
-fn all_lines() -> impl Iterator<Item = &'static Line> {
-    SECTIONS.iter().flat_map(|(_, lines)| lines.iter())
+/// A file in the making.
+struct Draft {
+    /// The name of a board or of its file, and the fields that it states.
+    board: Option<(String, Vec<String>)>,
+    values: Values,
 }
 
-fn value_of<'v>(values: &'v Values, line: &Line) -> Option<&'v (String, String)> {
-    values
-        .iter()
-        .find(|(name, _)| line.fields.contains(&name.as_str()))
-}
-
-/// Needed fields without value and default.
-fn missing(values: &Values) -> Vec<&'static str> {
-    all_lines()
-        .filter(|line| line.is_needed && line.default.is_none())
-        .filter(|line| value_of(values, line).is_none())
-        .map(|line| line.fields[0])
-        .collect()
-}
-
-/// Asks for what is missing; an empty answer leaves it to be filled in.
-fn ask(values: &mut Values) -> Result<(), Failure> {
-    let mut answers = std::io::stdin().lock().lines();
-    for line in all_lines() {
-        if !line.is_needed || line.default.is_some() || value_of(values, line).is_some() {
-            continue;
-        }
-        note(&format!(
-            "{}\n  {} ",
-            line.about.replace("\n# ", " "),
-            names(line)
-        ));
-        let mut prompt = std::io::stderr().lock();
-        let _ = write!(prompt, "  (as {}): ", line.example).and_then(|()| prompt.flush());
-        let Some(answer) = answers.next() else {
-            return Ok(());
+impl Draft {
+    /// A draft with these values; one may name a board.
+    fn of(values: Values, file: &Path) -> Result<Self, Failure> {
+        let (boards, values): (Values, Values) =
+            values.into_iter().partition(|(name, _)| name == BOARD);
+        let mut draft = Self {
+            board: None,
+            values,
         };
-        let answer = answer
-            .map_err(|error| Failure::Argument(format!("cannot read the answer: {error}")))?;
-        let answer = answer.trim();
-        let (name, value) = match answer.split_once('=') {
-            Some((name, value)) => (name.trim(), value.trim()),
-            None => (line.fields[0], answer),
-        };
-        if !value.is_empty() {
-            values.push((name.to_owned(), value.to_owned()));
+        if let Some((_, name)) = boards.into_iter().next() {
+            draft.put_on(&name, file)?;
         }
+        Ok(draft)
     }
-    Ok(())
+
+    fn put_on(&mut self, board: &str, file: &Path) -> Result<(), Failure> {
+        let name = file.display().to_string();
+        let mut ast = parse_toml(&entry(BOARD, board), &name).map_err(LabError::from)?;
+        ast.read_board(Path::new(""), &name, &mut vec![])
+            .map_err(LabError::from)?;
+        let fields = ast.board.and_then(|board| board.file).map(|file| {
+            let fields = file.inverter.fields.into_iter();
+            fields.map(|field| field.name).collect()
+        });
+        self.board = Some((board.to_owned(), fields.unwrap_or_default()));
+        Ok(())
+    }
+
+    /// The lines of a section: all but those whose field the board states and nobody else.
+    fn lines(&self, lines: &'static [Line]) -> impl Iterator<Item = &'static Line> {
+        lines.iter().filter(|line| {
+            let is_of_board = |(_, fields): &(String, Vec<String>)| {
+                let states = |name: &&str| fields.iter().any(|field| field == name);
+                line.fields.iter().any(states)
+            };
+            self.value_of(line).is_some() || !self.board.as_ref().is_some_and(is_of_board)
+        })
+    }
+
+    fn all_lines(&self) -> impl Iterator<Item = &'static Line> {
+        SECTIONS.iter().flat_map(|(_, lines)| self.lines(lines))
+    }
+
+    fn value_of(&self, line: &Line) -> Option<&(String, String)> {
+        self.values
+            .iter()
+            .find(|(name, _)| line.fields.contains(&name.as_str()))
+    }
+
+    /// Needed fields without value and default.
+    fn missing(&self) -> Vec<&'static str> {
+        self.all_lines()
+            .filter(|line| line.is_needed && line.default.is_none())
+            .filter(|line| self.value_of(line).is_none())
+            .map(|line| line.fields[0])
+            .collect()
+    }
+
+    /// Asks for what is missing; an empty answer leaves it to be filled in.
+    fn ask(&mut self, file: &Path) -> Result<(), Failure> {
+        let mut answers = std::io::stdin().lock().lines();
+        if self.board.is_none() {
+            let known: Vec<&str> = BOARDS.iter().map(|board| board.name).collect();
+            note(&format!(
+                "The board, or its file: {}; empty for none of them.",
+                known.join(", ")
+            ));
+            match answer(&mut answers, "vesc-4")? {
+                Some(board) if !board.is_empty() => self.put_on(&board, file)?,
+                Some(_) => {}
+                None => return Ok(()),
+            }
+        }
+        let lines: Vec<&Line> = self.all_lines().collect();
+        for line in lines {
+            if !line.is_needed || line.default.is_some() || self.value_of(line).is_some() {
+                continue;
+            }
+            note(&format!(
+                "{}\n  {} ",
+                line.about.replace("\n# ", " "),
+                names(line)
+            ));
+            let Some(answer) = answer(&mut answers, line.example)? else {
+                return Ok(());
+            };
+            let (name, value) = match answer.split_once('=') {
+                Some((name, value)) => (name.trim(), value.trim()),
+                None => (line.fields[0], answer.as_str()),
+            };
+            if !value.is_empty() {
+                self.values.push((name.to_owned(), value.to_owned()));
+            }
+        }
+        Ok(())
+    }
+
+    /// The file.
+    fn text(&self) -> String {
+        let mut text = String::from(
+            "# A motor and its drive, for hexagen. Write values as the data sheet states them, with unit and basis.\n",
+        );
+        if let Some((board, _)) = &self.board {
+            let _ = write!(
+                text,
+                "\n# Its fields stand in place of those that [inverter] lacks; `hexagen boards` lists the library.\n{}\n",
+                entry(BOARD, board)
+            );
+        }
+        for (section, lines) in SECTIONS {
+            let _ = write!(text, "\n[{section}]\n");
+            for line in self.lines(lines) {
+                let _ = writeln!(text, "# {}", line.about);
+                let entry = match (self.value_of(line), line.default) {
+                    (Some((name, value)), _) => entry(name, value),
+                    (None, Some(default)) => entry(line.fields[0], default),
+                    (None, None) => format!("# {}", entry(line.fields[0], line.example)),
+                };
+                text.push_str(&entry);
+                text.push('\n');
+            }
+            // What the template has no line for; an unknown field is told of as one of the motor.
+            let more = self.values.iter().filter(|(name, _)| {
+                let is_listed = self
+                    .all_lines()
+                    .any(|line| line.fields.contains(&name.as_str()));
+                !is_listed && section_of(name).unwrap_or("motor") == section
+            });
+            for (name, value) in more {
+                text.push_str(&entry(name, value));
+                text.push('\n');
+            }
+        }
+        text
+    }
+}
+
+/// The next answer to a prompt; none at the end of the input.
+fn answer(answers: &mut Lines<StdinLock>, example: &str) -> Result<Option<String>, Failure> {
+    let mut prompt = std::io::stderr().lock();
+    let _ = write!(prompt, "  (as {example}): ").and_then(|()| prompt.flush());
+    let answer = answers.next().transpose();
+    let answer =
+        answer.map_err(|error| Failure::Argument(format!("cannot read the answer: {error}")))?;
+    Ok(answer.map(|answer| answer.trim().to_owned()))
 }
 
 fn names(line: &Line) -> String {
@@ -294,36 +406,6 @@ fn names(line: &Line) -> String {
         [one, others @ ..] => format!("{one}, or {}=…", others.join("=… or ")),
         [] => String::new(),
     }
-}
-
-/// The file.
-fn text(values: &Values) -> String {
-    let mut text = String::from(
-        "# A motor and its drive, for hexagen. Write values as the data sheet states them, with unit and basis.\n",
-    );
-    for (section, lines) in SECTIONS {
-        let _ = write!(text, "\n[{section}]\n");
-        for line in lines {
-            let _ = writeln!(text, "# {}", line.about);
-            let entry = match (value_of(values, line), line.default) {
-                (Some((name, value)), _) => entry(name, value),
-                (None, Some(default)) => entry(line.fields[0], default),
-                (None, None) => format!("# {}", entry(line.fields[0], line.example)),
-            };
-            text.push_str(&entry);
-            text.push('\n');
-        }
-        // What the template has no line for; an unknown field is told of as one of the motor.
-        let more = values.iter().filter(|(name, _)| {
-            let is_listed = all_lines().any(|line| line.fields.contains(&name.as_str()));
-            !is_listed && section_of(name).unwrap_or("motor") == section
-        });
-        for (name, value) in more {
-            text.push_str(&entry(name, value));
-            text.push('\n');
-        }
-    }
-    text
 }
 
 /// `name = value`; numbers, flags and lists stand without quotes.
@@ -355,7 +437,11 @@ fn toml_text(text: &str) -> String {
 /// Whether what was given is right: what is missing is not wrong.
 fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
     let name = file.display().to_string();
-    let Err(errors) = parse_toml(text, &name).and_then(|ast| check(&ast).map(drop)) else {
+    let read = parse_toml(text, &name).and_then(|mut ast| {
+        ast.read_board(Path::new(""), &name, &mut vec![])?;
+        check(&ast).map(drop)
+    });
+    let Err(errors) = read else {
         return Ok(());
     };
     let wrong: Vec<String> = errors
@@ -366,8 +452,5 @@ fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
     if wrong.is_empty() {
         return Ok(());
     }
-    Err(
-        hexagen_lab::LabError::Specification(format!("{}\nNothing was written.", wrong.join("\n")))
-            .into(),
-    )
+    Err(LabError::Specification(format!("{}\nNothing was written.", wrong.join("\n"))).into())
 }

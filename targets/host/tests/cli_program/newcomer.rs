@@ -90,6 +90,36 @@ fn a_new_file_of_a_data_sheet_is_checked_in_ten_lines() {
     }
 }
 
+/// A Maxon motor on a board of three shunts, of which the inverter's fields are.
+#[test]
+fn a_new_file_on_a_board_leaves_out_what_the_board_states() {
+    const OF_BOARD: [&str; 4] = ["timer_clock", "adc_range", "current_sensing", "dead_time"];
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("flat.toml");
+    let path = path.to_str().expect("a path");
+    let is_own = |value: &&str| !OF_BOARD.iter().any(|name| value.starts_with(name));
+    let values = EC_45.into_iter().filter(is_own);
+    let arguments: Vec<&str> = ["new", path, "board=st-b-g431b-esc1"]
+        .into_iter()
+        .chain(values)
+        .collect();
+    let said = run(&arguments);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.stdout.contains("next: hexagen check"), "{said:?}");
+    let text = fs::read_to_string(path).expect("is there");
+    assert!(text.contains("\nboard = \"st-b-g431b-esc1\"\n"), "{text}");
+    for field in OF_BOARD {
+        assert!(!text.contains(field), "{field}: {text}");
+    }
+    assert!(text.contains("hall_timer_clock"), "{text}");
+    let said = run(["check", path]);
+    assert!(said.stdout.contains("29.37 mA a count"), "{said:?}");
+    let other = folder.path().join("other.toml");
+    let other = other.to_str().expect("a path");
+    run(["new", other, "board=esc1", "poles=8"]).assert_bad_input(&["esc1", "st-b-g431b-esc1"]);
+    assert!(!std::path::Path::new(other).exists());
+}
+
 #[track_caller]
 fn assert_short(said: &Said) {
     let lines: Vec<&str> = said.stdout.lines().collect();
