@@ -4,7 +4,7 @@ use super::current_loop::LoopDesign;
 use super::law::{Period, law};
 use super::trust::TRAPEZOID_PER_FILTER;
 use crate::design::emf::zero_sum_shape;
-use crate::spec::{EmfShape, EmfSource, Spec};
+use crate::spec::{EmfShape, EmfSource, InverterSpec, Spec};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Turn per period over the filter's share beyond which the estimate, which is advanced at the
@@ -100,10 +100,7 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
         1.0
     };
     let per_volt = per_volt * lack * hidden;
-    // The third phase's current is the sum of two, each half a count off; three compare values,
-    // each half a count off, put a phase voltage two thirds of a count off.
-    let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
-    let rounded = inverter.adc_gain.abs() + design.plant.gain * periods * 2.0 / 3.0 * count;
+    let rounded = rounding(inverter, design.plant.gain * periods);
     let room = (inverter.trip_current - rounded - own).max(0.0);
     let room = if options.speed.is_some() && slow {
         (room - BRAKING * inverter.max_current).max(0.0)
@@ -112,6 +109,15 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     };
     let peak = peak(motor.emf_shape) * motor.emf_constant;
     (room / (peak * per_volt)).min(met)
+}
+
+/// What rounding adds to a current, ampere; `gain`: ampere per volt until the next command takes effect.
+///
+/// The third phase's current is the sum of two, each half a count off; three compare values, each half a count off,
+/// put a phase voltage two thirds of a count off.
+fn rounding(inverter: &InverterSpec, gain: f64) -> f64 {
+    let count = inverter.greatest_bus() / f64::from(inverter.timer_period);
+    inverter.adc_gain.abs() + gain * 2.0 / 3.0 * count
 }
 
 /// Peak of the zero-sum part of a phase's unit EMF, which drives current.
