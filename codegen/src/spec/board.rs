@@ -4,8 +4,10 @@
 //! under a motor file's own where that names the board, over them where the call does.
 
 use super::ast::{Board, Field, Name, Section, SpecAst, Value};
-use crate::diagnostics::Diagnostic;
+use super::reader::Reader;
+use super::schema;
 use crate::diagnostics::catalogue::{self, Part};
+use crate::diagnostics::{Collector, Diagnostic, Location};
 
 /// Fields that a board has and a drive with another setting does without.
 const OF_SETTINGS: [(&str, &str, &[&str]); 3] = [
@@ -55,7 +57,10 @@ impl SpecAst {
                 text,
                 "it was not looked for",
             ));
-            return (self.inverter.clone(), errors);
+            // What the board would state is not reported as missing.
+            let mut own = self.inverter.clone();
+            own.incomplete = true;
+            return (own, errors);
         };
         errors.extend(file.malformed.iter().cloned());
         let mut whole = file.inverter.clone();
@@ -63,33 +68,59 @@ impl SpecAst {
         let location = self.inverter.location.clone();
         whole.overlay(self.inverter.clone());
         whole.location = location.or_else(|| Some(board.name.location.clone()));
-        errors.extend(outside_of_board(&whole, &file.inverter));
+        errors.extend(outside_of_board(
+            &whole,
+            &file.inverter,
+            &board.name.location,
+        ));
         errors.extend(sensors_not_there(&whole, &file.inverter));
         for (setting, wanted, fields) in OF_SETTINGS {
             let is_set =
                 |field: &Field| matches!(&field.value, Value::Word(word) if word == wanted);
             if !whole.field(setting).is_some_and(is_set) {
-                let own = |name: &str| self.inverter.field(name).is_some();
-                let name = |field: &Field| fields.contains(&field.name.as_str());
-                whole
-                    .fields
-                    .retain(|field| !name(field) || own(&field.name));
+                let is_of_board = |field: &Field| {
+                    let is_needless = fields.contains(&field.name.as_str());
+                    is_needless && self.inverter.field(&field.name).is_none()
+                };
+                errors.extend(unreadable(&whole, is_of_board, &board.name.location));
+                whole.fields.retain(|field| !is_of_board(field));
             }
         }
         (whole, errors)
     }
 }
 
-/// Current sensors that the board does not have: three of two, or sensors in the phases of a board with some
-/// in the low legs. Which two phases have one is a question of names.
+/// Wrong values among fields that nobody reads later.
+fn unreadable(
+    whole: &Section,
+    is_chosen: impl Fn(&Field) -> bool,
+    at: &Location,
+) -> Vec<Diagnostic> {
+    let mut errors = Collector::new();
+    let reader = Reader::new("inverter", whole, schema::INVERTER, at);
+    for rule in schema::INVERTER {
+        if whole.field(rule.name).is_some_and(&is_chosen) {
+            reader.read_number(&mut errors, rule);
+        }
+    }
+    errors.finish().into_iter().flatten().collect()
+}
+
+/// Current sensors that the board does not have: three of two, or sensors in another place. Which two phases have one
+/// is a question of names.
 fn sensors_not_there(whole: &Section, board: &Section) -> Option<Diagnostic> {
-    const MORE: [(&str, &str); 2] = [("sensed_phases", "abc"), ("current_sensing", "in_phase")];
-    MORE.into_iter().find_map(|(name, more)| {
-        let (given, own) = (whole.field(name)?, board.field(name)?);
-        let is_more = |field: &Field| matches!(&field.value, Value::Word(word) if word == more);
-        (is_more(given) && !is_more(own))
-            .then(|| catalogue::sensors_not_there(&part(name, given), &part(name, own)))
-    })
+    ["sensed_phases", "current_sensing"]
+        .into_iter()
+        .find_map(|name| {
+            let (given, own) = (whole.field(name)?, board.field(name)?);
+            let is_there = match (&given.value, &own.value) {
+                (Value::Word(given), Value::Word(own)) if name == "sensed_phases" => {
+                    given != "abc" || own == "abc"
+                }
+                (given, own) => given.to_string() == own.to_string(),
+            };
+            (!is_there).then(|| catalogue::sensors_not_there(&part(name, given), &part(name, own)))
+        })
 }
 
 fn part(field: &'static str, written: &Field) -> Part {
@@ -100,29 +131,31 @@ fn part(field: &'static str, written: &Field) -> Part {
     }
 }
 
-/// A bus voltage that is not the board's, or limits that leave none.
-fn outside_of_board(whole: &Section, board: &Section) -> Option<Diagnostic> {
-    let number = |field: Option<&Field>| match field.map(|field| &field.value) {
-        Some(Value::Number(number)) => Some(number.si()),
-        _ => None,
+/// Voltages that are not the board's, or limits that leave none. Values that cannot be read are told of elsewhere.
+fn outside_of_board(whole: &Section, board: &Section, at: &Location) -> Option<Diagnostic> {
+    let volts = |section: &Section, name: &'static str| {
+        let reader = Reader::new("inverter", section, schema::INVERTER, at);
+        let mut untold = Collector::new();
+        let given = reader.plain_quantity(&mut untold, name);
+        let is_right = untold.finish().is_none();
+        let given = given.filter(|_| is_right)?;
+        Some((given.si, given.part))
     };
-    let (low, high) = (board.field("bus_min"), board.field("bus_max"));
-    if let (Some(least), Some(most)) = (low, high)
-        && number(low) > number(high)
+    let (low, high) = (volts(board, "bus_min"), volts(board, "bus_max"));
+    if let (Some((least, low)), Some((most, high))) = (&low, &high)
+        && least > most
     {
-        let limits = [part("bus_min", least), part("bus_max", most)];
-        return Some(catalogue::bus_limits_exchanged(&limits[0], &limits[1]));
+        return Some(catalogue::bus_limits_exchanged(low, high));
     }
-    let given = whole.field("bus_voltage")?;
-    let voltage = number(Some(given))?;
-    let (side, name, limit) = match (number(low), number(high)) {
-        (Some(least), _) if voltage < least => ("below", "bus_min", low),
-        (_, Some(most)) if voltage > most => ("above", "bus_max", high),
-        _ => return None,
-    };
-    Some(catalogue::outside_of_board(
-        &part("bus_voltage", given),
-        side,
-        &part(name, limit?),
-    ))
+    ["bus_voltage", "over_voltage"]
+        .into_iter()
+        .find_map(|name| {
+            let (given, part) = volts(whole, name)?;
+            // A level of 0 trips nowhere.
+            let is_below = |(least, _): &&(f64, Part)| name == "bus_voltage" && given < *least;
+            let below = low.as_ref().filter(is_below).map(|limit| ("below", limit));
+            let above = high.as_ref().filter(|(most, _)| given > *most);
+            let (side, (_, limit)) = below.or(above.map(|limit| ("above", limit)))?;
+            Some(catalogue::outside_of_board(&part, side, limit))
+        })
 }

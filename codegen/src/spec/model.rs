@@ -331,6 +331,8 @@ pub struct InverterSpec {
     pub adc_offset: u32,
     /// The second sensor, and with three the third.
     pub other_sensors: Vec<CurrentSensor>,
+    /// Greatest current of either sign that the amplifiers show, ampere; none where the converter's range is less.
+    pub amplifier_reach: Option<f64>,
     /// The phases with a sensor.
     pub sensed_phases: SensedPhases,
     /// Where the sensors are.

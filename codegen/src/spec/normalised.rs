@@ -238,6 +238,7 @@ mod tests {
                     gain: 0.019_531_25,
                     offset: 2048,
                 }],
+                amplifier_reach: None,
                 sensed_phases: SensedPhases::Ab,
                 current_sum: None,
                 current_sensing: CurrentSensing::InPhase,

@@ -100,6 +100,13 @@ impl InverterSpec {
         std::iter::once(first).chain(others).collect()
     }
 
+    /// Greatest current of either sign that the first sensor shows, ampere.
+    pub fn shown_current(&self) -> f64 {
+        let converter = self.adc_gain.abs() * f64::from(1_u32 << self.adc_bits) / 2.0;
+        self.amplifier_reach
+            .map_or(converter, |reach| reach.min(converter))
+    }
+
     /// Gain of a sensor over that of the first, with [`RATIO_BITS`].
     pub fn ratio(&self, sensor: CurrentSensor) -> i32 {
         let ratio = sensor.gain.abs() / self.adc_gain.abs();

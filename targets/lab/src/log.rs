@@ -37,12 +37,6 @@ pub struct LogRow {
 pub struct LogError(pub(crate) String);
 
 impl LogError {
-    /// What is wrong in a period, from 0; its line is told.
-    pub(crate) fn in_period(period: usize, what: &str) -> Self {
-        // The header is line 1.
-        Self(format!("line {}: {what}", period + 2))
-    }
-
     /// A log without periods.
     pub(crate) fn empty() -> Self {
         Self("no periods; give a header and a row per period".to_owned())
@@ -55,13 +49,84 @@ impl From<csv::Error> for LogError {
     }
 }
 
-/// The rows of a log.
-pub(crate) fn rows(log: impl Read) -> impl Iterator<Item = Result<LogRow, LogError>> {
-    let rows = csv::Reader::from_reader(log).into_deserialize();
-    rows.map(|row| row.map_err(LogError::from))
+/// A call before a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Call {
+    Calibrate,
+    Precharge,
+    Reset,
+    Coast,
+    Brake,
+    Resume,
+}
+
+impl Call {
+    const WORDS: [(&str, Self); 6] = [
+        ("calibrate", Self::Calibrate),
+        ("precharge", Self::Precharge),
+        ("reset", Self::Reset),
+        ("coast", Self::Coast),
+        ("brake", Self::Brake),
+        ("resume", Self::Resume),
+    ];
+}
+
+/// The rows of a log, each with a function that says what is wrong in its line.
+pub(crate) fn rows(
+    log: impl Read,
+) -> Result<impl Iterator<Item = Result<(LogRow, impl Fn(String) -> LogError), LogError>>, LogError>
+{
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(log);
+    let columns = reader.headers()?.clone();
+    Ok(reader.into_records().map(move |record| {
+        let record = record?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let at = move |what: String| LogError(format!("line {line}: {what}"));
+        let row = record.deserialize(Some(&columns));
+        Ok((
+            row.map_err(|error| at(cell(&error, &columns, &record)))?,
+            at,
+        ))
+    }))
+}
+
+/// What is wrong with a cell, by its column.
+fn cell(error: &csv::Error, columns: &csv::StringRecord, record: &csv::StringRecord) -> String {
+    let csv::ErrorKind::Deserialize { err, .. } = error.kind() else {
+        return error.to_string();
+    };
+    let place = err.field().and_then(|place| usize::try_from(place).ok());
+    let named = place.and_then(|place| Some((columns.get(place)?, record.get(place)?)));
+    match named {
+        Some((column, given)) => format!(
+            "`{column}`: `{given}` is no {}",
+            if ["current_a", "torque_nm", "speed_rpm"].contains(&column) {
+                "number"
+            } else {
+                "whole number from 0 to 65535"
+            }
+        ),
+        None => err.kind().to_string(),
+    }
 }
 
 impl LogRow {
+    /// What was called.
+    pub(crate) fn call(&self) -> Result<Option<Call>, String> {
+        let word = self.call.as_deref().unwrap_or_default();
+        let known = Call::WORDS.iter().find(|(own, _)| *own == word);
+        match known {
+            Some((_, call)) => Ok(Some(*call)),
+            None if word.is_empty() => Ok(None),
+            None => Err(format!(
+                "`call`: {word} is none of {}",
+                Call::WORDS.map(|(own, _)| own).join(", ")
+            )),
+        }
+    }
+
     /// Counts in the order of the sensed phases.
     pub(crate) fn counts(&self) -> impl Iterator<Item = u16> + use<> {
         [self.adc_1, self.adc_2].into_iter().chain(self.adc_3)
@@ -84,6 +149,7 @@ impl LogRow {
                 self.hall
             ));
         }
+        self.call()?;
         match (inverter.sensed_phases.phases().len(), self.adc_3) {
             (3, None) => Err("`adc_3` is missing: the drive has three current sensors".to_owned()),
             (2, Some(_)) => {

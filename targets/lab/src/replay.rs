@@ -3,7 +3,7 @@
 
 use crate::Interpreted;
 use crate::engine::Prepared;
-use crate::log::{LogError, LogRow, rows};
+use crate::log::{Call, LogError, LogRow, rows};
 use hexagen::{Command, Legs, Sample};
 use hexagen_codegen::interface::Unit;
 use hexagen_codegen::ir::{Phase, Told, Value};
@@ -37,11 +37,10 @@ pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Repla
         periods: 0,
         fault: None,
     };
-    for (period, row) in rows(log).enumerate() {
-        let row = row?;
-        let at = |what: String| LogError::in_period(period, &what);
-        let sample = sample(drive, &row).map_err(at)?;
-        give(&mut subject, &row).map_err(at)?;
+    for (period, row) in rows(log)?.enumerate() {
+        let (row, at) = row?;
+        let sample = sample(drive, &row).map_err(&at)?;
+        give(drive, &mut subject, &row).map_err(&at)?;
         let legs = subject.step(&sample);
         let row = view.row(period, &subject, legs);
         writer.write_record(row)?;
@@ -81,35 +80,45 @@ fn sample(drive: &Prepared, row: &LogRow) -> Result<Sample, String> {
 }
 
 /// Set-points and calls of a row.
-fn give(drive: &mut Interpreted<'_>, row: &LogRow) -> Result<(), String> {
-    let bits = |value: f64| (value * FRACTION).round() as i32;
+fn give(drive: &Prepared, subject: &mut Interpreted<'_>, row: &LogRow) -> Result<(), String> {
     if let Some(counts) = row.bus {
-        drive.set_bus(counts);
+        if drive.bus_counts(0.0).is_none() {
+            return Err("`bus`: the drive measures no bus; leave it out".to_owned());
+        }
+        subject.set_bus(counts);
     }
     if let Some(current) = row.current_a {
-        drive.set_current(bits(current));
+        subject.set_current(fixed("current_a", current)?);
     }
     if let Some(torque) = row.torque_nm {
-        drive.set_torque(bits(torque));
+        subject.set_torque(fixed("torque_nm", torque)?);
     }
     if let Some(speed) = row.speed_rpm {
-        drive.set_speed(bits(speed));
-    }
-    match row.call.as_deref().unwrap_or_default() {
-        "" => {}
-        "calibrate" => drive.calibrate(),
-        "precharge" => drive.precharge(),
-        "reset" => drive.reset(),
-        "coast" => drive.stop(Stop::Coast),
-        "brake" => drive.stop(Stop::Brake),
-        "resume" => drive.stop(Stop::Resume),
-        other => {
-            return Err(format!(
-                "`call`: {other} is none of calibrate, precharge, reset, coast, brake and resume"
-            ));
+        if drive.spec.controller.common().speed.is_none() {
+            return Err("`speed_rpm`: the drive has no speed loop; leave it out".to_owned());
         }
+        subject.set_speed(fixed("speed_rpm", speed)?);
+    }
+    match row.call()? {
+        None => {}
+        Some(Call::Calibrate) => subject.calibrate(),
+        Some(Call::Precharge) => subject.precharge(),
+        Some(Call::Reset) => subject.reset(),
+        Some(Call::Coast) => subject.stop(Stop::Coast),
+        Some(Call::Brake) => subject.stop(Stop::Brake),
+        Some(Call::Resume) => subject.stop(Stop::Resume),
     }
     Ok(())
+}
+
+/// A set-point with 16 bits of fraction.
+fn fixed(name: &str, value: f64) -> Result<i32, String> {
+    const MOST: f64 = 32_767.0;
+    if value.abs() <= MOST {
+        Ok((value * FRACTION).round() as i32)
+    } else {
+        Err(format!("`{name}`: {value} is outside -{MOST} to {MOST}"))
+    }
 }
 
 /// What is shown of a drive's period.

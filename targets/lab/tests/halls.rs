@@ -57,7 +57,7 @@ fn turned(drive: &Prepared, plant: PlantParams, share: f64, strokes: &[f64]) -> 
 }
 
 fn found(drive: &Prepared, log: &str) -> Result<Halls, LogError> {
-    find(drive, log.as_bytes())
+    find(drive, log.as_bytes(), drive.spec.inverter.t_s)
 }
 
 /// A motor whose sensors, offsets and data are not the stated ones.
@@ -112,6 +112,8 @@ fn sound_sensors_are_found_in_their_places_and_in_either_direction() {
         assert_eq!(halls.codes, drive.spec.motor.hall_codes);
         let [forward, backward] = halls.turns;
         assert_eq!(backward > forward, strokes[0] < 0.0);
+        assert_eq!(halls.begins_forward, strokes[0] > 0.0);
+        assert!(halls.roundness > 0.98, "{}", halls.roundness);
         for (edge, place) in halls.edges.iter().zip(drive.spec.motor.hall_angles) {
             assert!((edge.angle - place).abs() < 0.5, "{edge:?} at {place}");
             assert!(edge.hysteresis.is_none() && edge.spread < 0.5, "{edge:?}");

@@ -161,7 +161,8 @@ fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
     } else {
         0.0
     };
-    let ends = adc.reach - (usual_tolerance(1 << adc.bits) + 1.0) * adc.gain;
+    let converter = f64::from(1_u32 << adc.bits) / 2.0 - usual_tolerance(1 << adc.bits) - 1.0;
+    let ends = adc.reach.min(converter * adc.gain);
     let most = (ends - adc.gain).max(reach.min(shown));
     let trip = (TRIP_BY_DEFAULT * drive.max_current).max(vectors).min(most);
     whole_counts(trip, adc.gain, f64::ceil).min(shown)

@@ -79,6 +79,7 @@ pub(super) fn inverter(
         adc_gain: first.gain,
         adc_offset: first.offset,
         other_sensors: others.to_vec(),
+        amplifier_reach: adc.linear.is_finite().then_some(adc.linear),
         sensed_phases: inverter.sensing.phases,
         current_sensing: inverter.sensing.place?,
         current_sum: current_sum(reader, &inverter.sensing, adc, trip_current, errors),

@@ -52,6 +52,8 @@ pub(super) struct Adc {
     pub offset_tolerance: u32,
     /// Greatest current of either sign on every sensor, ampere: that of the last count, or of the amplifiers' swing.
     pub reach: f64,
+    /// The amplifiers' own limit, ampere; infinite where they have none below the converter's.
+    pub linear: f64,
     /// `adc_range`, `adc_gain` or `shunt` as written.
     pub part: Part,
 }
@@ -377,6 +379,7 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
         sensors,
         offset_tolerance,
         reach,
+        linear,
         part,
     })
 }

@@ -4,7 +4,7 @@ use super::{Reader, other_names};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, engineering, percent, rpm, significant};
 use crate::spec::ast::{Basis, Number, Value};
-use crate::spec::rule::{Kind, Preset};
+use crate::spec::rule::{Kind, Preset, Rule};
 use crate::spec::units::Dimension;
 use crate::spec::value::parse_value;
 use crate::spec::words::Words;
@@ -144,6 +144,16 @@ impl<'a> Reader<'a> {
     pub fn plain_quantity(&self, errors: &mut Collector, name: &'static str) -> Option<Given<'a>> {
         let given = self.quantity(errors, name)?;
         refuse_basis(errors, &given, "remove the word").then_some(given)
+    }
+
+    /// Reads a number by its rule for its errors alone.
+    pub fn read_number(&self, errors: &mut Collector, rule: &Rule) {
+        match rule.kind {
+            Kind::Quantity { .. } => drop(self.plain_quantity(errors, rule.name)),
+            Kind::Plain { .. } => drop(self.plain(errors, rule.name)),
+            Kind::Integer { .. } | Kind::OneOf(_) => drop(self.integer(errors, rule.name)),
+            _ => {}
+        }
     }
 
     /// A time or a number of control periods (bare or with its unit), without limits.

@@ -169,6 +169,30 @@ fn sensors_that_the_board_does_not_have_are_refused() {
 }
 
 #[test]
+fn values_that_the_drive_does_without_are_read() {
+    const LOW_SIDE: &str = "current_sensing = \"in_phase\"\n";
+    let board = format!("{BOARD}{LOW_SIDE}");
+    for (old, new, words) in [
+        ("bus_min = \"10 V\"", "bus_min = \"10 A\"", "a current, but"),
+        ("bus_max = \"50 V\"", "bus_max = \"1 MV\"", "`bus_max`"),
+        ("bus_adc_bits = 12", "bus_adc_bits = 99", "`bus_adc_bits`"),
+        (
+            LOW_SIDE,
+            "current_sensing = \"in_phase\"\nsettling_time = \"1 kg\"\n",
+            "`settling_time`",
+        ),
+    ] {
+        let wrong = board.replace(old, new);
+        assert_ne!(wrong, board);
+        let folder = Folder::new("unread", MOTOR, &wrong);
+        let call = r#"Rear { motor: "motors/hub.toml", board: "boards/mine.toml" }"#;
+        let text = folder.check(call).0.expect_err("is in error");
+        assert!(text.contains(words), "{new}: {text}");
+        assert!(!text.contains("no supply fits"), "{new}: {text}");
+    }
+}
+
+#[test]
 fn limits_that_leave_no_bus_voltage_are_told() {
     let exchanged = BOARD.replace("bus_min = \"", "bus_min = \"9");
     let folder = Folder::new("limits", MOTOR, &exchanged);

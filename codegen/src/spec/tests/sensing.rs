@@ -174,6 +174,10 @@ fn an_amplifier_that_saturates_bounds_the_trip_level() {
     let inverter = with_lines(&swing);
     assert_eq!(inverter.sensors(), of_converter.sensors());
     assert!(inverter.trip_current < 135.0, "{}", inverter.trip_current);
+    // What offsets take of the converter's range is not taken of the amplifiers'.
+    let near = format!("{SHUNT}amplifier_swing = \"0.3 V\"");
+    let trip = with_lines(&near).trip_current;
+    assert!((29.8..30.0).contains(&trip), "{trip}");
     let told = |lines: &str| {
         let text = COMPLETE.replace("adc_range = \"40 A\"", lines);
         let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));

@@ -233,10 +233,7 @@ impl Checked {
                     CurrentSensing::LowSide(_) => "in the low legs",
                 },
                 inverter.adc_bits,
-                engineering(
-                    inverter.adc_gain.abs() * f64::from(1_u32 << inverter.adc_bits) / 2.0,
-                    "A"
-                ),
+                engineering(inverter.shown_current(), "A"),
                 engineering(inverter.adc_gain.abs(), "A"),
                 significant(self.rated_counts, 3),
                 engineering(inverter.trip_current, "A"),

@@ -15,11 +15,14 @@ pub struct Options {
     /// The drive; of its motor file resistance, inductance and pole pairs count, and of the inverter the sensors.
     #[command(flatten)]
     pub drive: DriveArguments,
-    /// CSV with a row per control period and a header: `adc_1`, `adc_2`, `adc_3` (counts of the sensed phases in
+    /// CSV with a row per control period, or per `--every`, and a header: `adc_1`, `adc_2`, `adc_3` (counts of the sensed phases in
     /// their order) and `hall`, of the shorted motor while its shaft is turned by hand for some turns. With a column
     /// `call`, the rows from `brake` to the next other call count
     #[arg(long, value_name = "FILE")]
     pub log: PathBuf,
+    /// Control periods from a row to the next
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub every: u32,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -37,14 +40,24 @@ const OTHER_MOTOR: f64 = 0.15;
 /// An effect of a wrong inductance that is told, degrees.
 const WORTH_TELLING: f64 = 0.5;
 
+/// Narrowest over widest current below which gains differ by enough to move edges by a degree.
+const LEAST_ROUNDNESS: f64 = 0.97;
+
+/// Distance of the passes of one edge that no sensor has, degrees.
+const MOST_SPREAD: f64 = 4.0;
+
+/// Hystereses of Hall sensors, degrees.
+const LIKELY_HYSTERESIS: std::ops::RangeInclusive<f64> = -2.0..=20.0;
+
 /// Runs the command.
 ///
 /// # Errors
 /// Diagnostics; a log that cannot be read, with the line, or that does not tell the sensors' places.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = options.drive.prepare()?;
-    let found =
-        find(&drive, open_log(&options.log)?).map_err(|error| in_log(&options.log, &error))?;
+    let row_time = f64::from(options.every) * drive.spec.inverter.t_s;
+    let found = find(&drive, open_log(&options.log)?, row_time)
+        .map_err(|error| in_log(&options.log, &error))?;
     if options.json {
         return print_json(&found);
     }
@@ -88,10 +101,9 @@ fn table(found: &Halls) -> Table {
 /// What to write into the motor's file, and what to look at.
 fn lines(found: &Halls, motor: &MotorSpec) -> Vec<String> {
     let mut lines = vec![codes(found, motor), places(found, motor)];
-    let [forward, backward] = found.turns;
-    if backward > forward {
+    if !found.begins_forward {
         lines.push(
-            "the rotor turned backward, c before b before a: if you turned it the way that shall be forward, exchange two wires of the motor and record again"
+            "the first turn was backward, c before b before a: if you turned the way that shall be forward, exchange two wires of the motor and record again"
                 .to_owned(),
         );
     }
@@ -131,7 +143,35 @@ fn codes(found: &Halls, motor: &MotorSpec) -> String {
     }
 }
 
+/// Why the angles are not to be trusted.
+fn doubts(found: &Halls) -> Option<String> {
+    let spread = found
+        .edges
+        .iter()
+        .map(|edge| edge.spread)
+        .fold(0.0, f64::max);
+    let hystereses = || found.edges.iter().filter_map(|edge| edge.hysteresis);
+    if found.roundness < LEAST_ROUNDNESS {
+        return Some(format!(
+            "the currents are {:.0} % as large in one direction as in another: gains of the sensors differ (`adc_gain` as a list), or the windings",
+            100.0 * found.roundness
+        ));
+    }
+    if spread > MOST_SPREAD {
+        return Some(format!(
+            "the passes of an edge lie up to {spread:.0} deg apart: offsets that drift, counts that clip, or turns that are too fast"
+        ));
+    }
+    let lag = hystereses().find(|lag| !LIKELY_HYSTERESIS.contains(lag))?;
+    Some(format!(
+        "a hysteresis of {lag:.0} deg: `resistance` or `inductance` is far off, or the rows lie not as far apart as `--every` says"
+    ))
+}
+
 fn places(found: &Halls, motor: &MotorSpec) -> String {
+    if let Some(doubt) = doubts(found) {
+        return format!("hall_angles: not to be told from this log; {doubt}");
+    }
     let angles = found.edges.map(|edge| edge.angle);
     let farthest = |from: &[f64; 6]| {
         let distances = angles

@@ -30,6 +30,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
                 bits: inverter.adc_bits,
                 amperes_per_count: sensor.gain,
                 offset: f64::from(sensor.offset),
+                most: inverter.amplifier_reach,
                 noise: 0.0,
                 instant: times.map_or(0.0, |times| {
                     f64::from(place / times.converters) * times.conversion - times.lead

@@ -5,7 +5,7 @@
 
 use super::Reading;
 use crate::plant::clarke;
-use hexagen_codegen::spec::Spec;
+use hexagen_codegen::spec::{MotorSpec, Spec};
 use std::f64::consts::TAU;
 
 /// A vector in the stationary plane.
@@ -28,11 +28,8 @@ pub(super) fn current(spec: &Spec, counts: impl Iterator<Item = u16>) -> Vector 
 }
 
 /// The flux linkage at each reading up to a constant, and up to a drift by the sensors' offsets.
-pub(super) fn integrated(spec: &Spec, readings: &[Reading]) -> Vec<Vector> {
-    let (r_ts, l) = (
-        spec.motor.resistance * spec.inverter.t_s,
-        spec.motor.inductance,
-    );
+pub(super) fn integrated(motor: &MotorSpec, row_time: f64, readings: &[Reading]) -> Vec<Vector> {
+    let (r_ts, l) = (motor.resistance * row_time, motor.inductance);
     let mut charge = [0.0; 2];
     let mut before: Option<Vector> = None;
     let integral = readings.iter().map(|Reading { current, .. }| {

@@ -10,7 +10,7 @@ mod flux;
 pub use edges::Edge;
 
 use crate::engine::Prepared;
-use crate::log::{LogError, LogRow, rows};
+use crate::log::{Call, LogError, LogRow, rows};
 use edges::{edges, passes};
 use flux::{Circle, Vector};
 use hexagen_codegen::spec::Spec;
@@ -53,6 +53,10 @@ pub struct Halls {
     pub edges: [Edge; 6],
     /// Electrical turns forward, and backward.
     pub turns: [f64; 2],
+    /// Whether the first whole electrical turn is forward.
+    pub begins_forward: bool,
+    /// Narrowest over widest current of the phases: 1 for like gains.
+    pub roundness: f64,
     /// Mean mechanical speed, rpm.
     pub rpm: f64,
     /// Samples with a code that stood for less than three.
@@ -63,17 +67,17 @@ pub struct Halls {
     pub inductance_effect: f64,
 }
 
-/// Finds codes and edges in a log of a drive. `log`: as [`crate::replay::replay`] takes it; the rows from a `brake` to the next
-/// other call count, or all where there is no call.
+/// Finds codes and edges in a log of a drive. `log`: as [`crate::replay::replay`] takes it, with a row every `row_time`
+/// seconds; the rows from a `brake` to the next other call count, or all where there is no call.
 ///
 /// # Errors
 /// A row that cannot be read, by its line; a log that does not tell the angle: too short, too small currents, or
 /// currents that are not those of three phases; codes that are not those of six sectors.
-pub fn find(drive: &Prepared, log: impl Read) -> Result<Halls, LogError> {
+pub fn find(drive: &Prepared, log: impl Read, row_time: f64) -> Result<Halls, LogError> {
     let spec = &drive.spec;
     let (readings, glitches) = edges::without_glitches(shorted(spec, log)?);
     let passes = passes(&readings);
-    let mut flux = flux::integrated(spec, &readings);
+    let mut flux = flux::integrated(&spec.motor, row_time, &readings);
     flux::without_drift(&mut flux, &passes.repeated());
     let circle = Circle::of(&flux).ok_or_else(|| small(spec, &readings))?;
     check_signal(spec, &readings, &circle)?;
@@ -81,7 +85,7 @@ pub fn find(drive: &Prepared, log: impl Read) -> Result<Halls, LogError> {
     let turned = Turned::of(&angles, &circle.apart);
     if turned.forward + turned.backward < LEAST_TURNS * TAU {
         return Err(LogError(format!(
-            "the rotor turns by {:.1} electrical turns; turn it by some mechanical turns, at least {LEAST_TURNS} electrical ones in one direction",
+            "the rotor turns by {:.1} electrical turns; turn it farther, by at least {LEAST_TURNS}",
             (turned.forward + turned.backward) / TAU
         )));
     }
@@ -93,7 +97,7 @@ pub fn find(drive: &Prepared, log: impl Read) -> Result<Halls, LogError> {
     }
     let codes = codes(&readings, &angles, &circle.apart)?;
     let (codes, edges) = edges(codes, &passes, &angles)?;
-    let time = readings.len() as f64 * spec.inverter.t_s;
+    let time = readings.len() as f64 * row_time;
     let speed = (turned.forward + turned.backward) / time;
     let poles = f64::from(spec.motor.pole_pairs);
     let effect = INDUCTANCE_ERROR * speed * spec.motor.inductance / spec.motor.resistance;
@@ -101,6 +105,8 @@ pub fn find(drive: &Prepared, log: impl Read) -> Result<Halls, LogError> {
         codes,
         edges,
         turns: [turned.forward / TAU, turned.backward / TAU],
+        begins_forward: turned.begins_forward,
+        roundness: circle.roundness,
         rpm: speed / poles * 60.0 / TAU,
         glitches,
         emf_constant: circle.radius * poles / spec.motor.emf_shape.fundamental(),
@@ -113,18 +119,18 @@ fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
     let mut stretches: Vec<Vec<Reading>> = vec![Vec::new()];
     let mut has_calls = false;
     let mut is_short = true;
-    for (period, row) in rows(log).enumerate() {
-        let row: LogRow = row?;
-        row.check(&spec.inverter)
-            .map_err(|what| LogError::in_period(period, &what))?;
-        if let Some(call) = row.call.as_deref().filter(|call| !call.is_empty()) {
+    for row in rows(log)? {
+        let (row, at) = row?;
+        row.check(&spec.inverter).map_err(&at)?;
+        if let Some(call) = row.call().map_err(&at)? {
             if !std::mem::replace(&mut has_calls, true) {
                 stretches.clear();
             }
-            is_short = call == "brake";
+            is_short = call == Call::Brake;
             stretches.push(Vec::new());
         }
         if is_short && let Some(stretch) = stretches.last_mut() {
+            check_range(spec, &row).map_err(&at)?;
             stretch.push(Reading {
                 current: flux::current(spec, row.counts()),
                 hall: row.hall,
@@ -139,6 +145,22 @@ fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
         )),
         None => Err(LogError::empty()),
     }
+}
+
+/// Whether the sensors show the currents, and a drive would bear them.
+fn check_range(spec: &Spec, row: &LogRow) -> Result<(), String> {
+    let inverter = &spec.inverter;
+    for (count, sensor) in row.counts().zip(inverter.sensors()) {
+        let current = sensor.gain * (f64::from(count) - f64::from(sensor.offset));
+        let is_at_end = count == 0 || u32::from(count) == inverter.adc_max();
+        if is_at_end || current.abs() > inverter.trip_current {
+            return Err(format!(
+                "a count of {count} is {current:.1} A, beyond the trip level of {:.1} A or at an end of the range; turn the motor slower",
+                inverter.trip_current
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn small(spec: &Spec, readings: &[Reading]) -> LogError {
@@ -166,7 +188,7 @@ fn check_signal(spec: &Spec, readings: &[Reading], circle: &Circle) -> Result<()
     if circle.roundness < LEAST_ROUNDNESS {
         return Err(LogError(format!(
             "the currents are not those of three equal phases: their ellipse is {:.0} % as wide as long; a sensor has the wrong sign (`adc_inverted`), \
-             gain or phase (`sensed_phases`), a phase is open, or the rotor was turned too little",
+             gain or phase (`sensed_phases`), its offset drifts, a phase is open, or the rotor was turned too little",
             100.0 * circle.roundness
         )));
     }
@@ -177,6 +199,8 @@ fn check_signal(spec: &Spec, readings: &[Reading], circle: &Circle) -> Result<()
 struct Turned {
     forward: f64,
     backward: f64,
+    /// Whether the rotor is first a whole turn ahead of where it was, not behind.
+    begins_forward: bool,
     /// Between two samples at most.
     most: f64,
 }
@@ -186,8 +210,10 @@ impl Turned {
         let mut turned = Self {
             forward: 0.0,
             backward: 0.0,
+            begins_forward: true,
             most: 0.0,
         };
+        let (mut ahead, mut is_begun) = (0.0, false);
         for pair in apart.windows(2) {
             let [first, last] = [pair[0], pair[1]];
             let step = signed(angles[last] - angles[first]);
@@ -195,6 +221,11 @@ impl Turned {
                 turned.forward += step;
             } else {
                 turned.backward -= step;
+            }
+            ahead += step;
+            if !is_begun && ahead.abs() >= TAU {
+                is_begun = true;
+                turned.begins_forward = ahead > 0.0;
             }
             turned.most = turned.most.max(step.abs() / (last - first) as f64);
         }

@@ -10,9 +10,12 @@ pub(super) fn full_scale(bits: u32) -> f64 {
     f64::from((1_u32 << bits) - 1)
 }
 
-/// Count of a channel at a current in amperes; clamped to the ADC's range.
+/// Count of a channel at a current in amperes; clamped to the amplifier's and to the converter's range.
 pub(super) fn convert(channel: &AdcChannel, current: f64, random: &mut fastrand::Rng) -> u16 {
-    let mut count = current / channel.amperes_per_count + channel.offset;
+    let shown = channel
+        .most
+        .map_or(current, |most| current.clamp(-most, most));
+    let mut count = shown / channel.amperes_per_count + channel.offset;
     if channel.noise > 0.0 {
         count += channel.noise * gaussian(random);
     }
@@ -76,6 +79,13 @@ mod tests {
         assert_eq!(convert(&channel, -1.0), 1998);
         assert_eq!(convert(&channel, 1e3), 4095);
         assert_eq!(convert(&channel, -1e3), 0);
+        let saturating = AdcChannel {
+            most: Some(30.0),
+            ..channel
+        };
+        assert_eq!(convert(&saturating, 29.0), 2048 + 1450);
+        assert_eq!(convert(&saturating, 35.0), 2048 + 1500);
+        assert_eq!(convert(&saturating, -1e3), 2048 - 1500);
         let inverting = AdcChannel {
             amperes_per_count: -0.02,
             ..channel

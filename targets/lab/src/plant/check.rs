@@ -168,6 +168,9 @@ fn check_channel(channel: &AdcChannel) -> Checked {
         (gain, "A"),
         "finite and not zero",
     )?;
+    if let Some(most) = channel.most {
+        positive("adc most", most, "A")?;
+    }
     let counts = 0.0..=full_scale(channel.bits);
     let limit = format!("from 0 to {} counts", counts.end());
     for (name, value) in [("adc offset", channel.offset), ("adc noise", channel.noise)] {

@@ -30,6 +30,9 @@ pub struct AdcChannel {
     pub amperes_per_count: f64,
     /// Count at zero current; need not be whole.
     pub offset: f64,
+    /// Greatest current of either sign that the amplifier shows, in amperes; none where the converter's range is less.
+    #[serde(default)]
+    pub most: Option<f64>,
     /// Standard deviation of Gaussian noise in counts, independent from sample to sample.
     #[serde(default)]
     pub noise: f64,
@@ -49,6 +52,7 @@ impl AdcChannel {
             bits,
             amperes_per_count: range / half,
             offset: half,
+            most: None,
             noise: 0.0,
             instant: 0.0,
         }
