@@ -98,9 +98,12 @@ fn unreadable(
 ) -> Vec<Diagnostic> {
     let mut errors = Collector::new();
     let reader = Reader::new("inverter", whole, schema::INVERTER, at);
-    for rule in schema::INVERTER {
-        if whole.field(rule.name).is_some_and(&is_chosen) {
-            reader.read_number(&mut errors, rule);
+    for field in whole.fields.iter().filter(|field| is_chosen(field)) {
+        let rule = schema::INVERTER.iter().find(|rule| rule.name == field.name);
+        match (&field.value, rule) {
+            (Value::Malformed(error), _) => errors.push((**error).clone()),
+            (_, Some(rule)) => reader.read_number(&mut errors, rule),
+            (_, None) => {}
         }
     }
     errors.finish().into_iter().flatten().collect()

@@ -71,24 +71,31 @@ impl Call {
     ];
 }
 
-/// The rows of a log, each with a function that says what is wrong in its line.
+/// A line of a log, from 1.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line(u64);
+
+impl Line {
+    /// What is wrong in the line.
+    pub(crate) fn error(self, what: &str) -> LogError {
+        LogError(format!("line {}: {what}", self.0))
+    }
+}
+
+/// The rows of a log, each with its line.
 pub(crate) fn rows(
     log: impl Read,
-) -> Result<impl Iterator<Item = Result<(LogRow, impl Fn(String) -> LogError), LogError>>, LogError>
-{
+) -> Result<impl Iterator<Item = Result<(LogRow, Line), LogError>>, LogError> {
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(log);
     let columns = reader.headers()?.clone();
     Ok(reader.into_records().map(move |record| {
         let record = record?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let at = move |what: String| LogError(format!("line {line}: {what}"));
+        let line = Line(record.position().map_or(0, csv::Position::line));
         let row = record.deserialize(Some(&columns));
-        Ok((
-            row.map_err(|error| at(cell(&error, &columns, &record)))?,
-            at,
-        ))
+        let row = row.map_err(|error| line.error(&cell(&error, &columns, &record)))?;
+        Ok((row, line))
     }))
 }
 

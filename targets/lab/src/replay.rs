@@ -38,9 +38,9 @@ pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Repla
         fault: None,
     };
     for (period, row) in rows(log)?.enumerate() {
-        let (row, at) = row?;
-        let sample = sample(drive, &row).map_err(&at)?;
-        give(drive, &mut subject, &row).map_err(&at)?;
+        let (row, line) = row?;
+        let sample = sample(drive, &row).map_err(|what| line.error(&what))?;
+        give(drive, &mut subject, &row).map_err(|what| line.error(&what))?;
         let legs = subject.step(&sample);
         let row = view.row(period, &subject, legs);
         writer.write_record(row)?;

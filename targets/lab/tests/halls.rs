@@ -182,6 +182,7 @@ fn a_log_that_does_not_tell_the_angle_is_refused_with_the_reason() {
             "the rotor was turned too little",
         ),
         (told(dead, 0.1, &STROKES), "never changing: Hb;"),
+        (told(sound(), 0.98, &STROKES), "beyond the trip level"),
     ] {
         assert!(text.contains(words), "{text}\n{words}");
     }
@@ -189,6 +190,17 @@ fn a_log_that_does_not_tell_the_angle_is_refused_with_the_reason() {
         .expect_err("is empty")
         .to_string();
     assert!(empty.contains("no periods"), "{empty}");
+    let word = found(&drive, "adc_1,adc_2,hall,call\n\n9,x,1,\n")
+        .expect_err("is no count")
+        .to_string();
+    assert!(
+        word.contains("line 3: `adc_2`: `x` is no whole number"),
+        "{word}"
+    );
+    let call = found(&drive, "adc_1,adc_2,hall,call\n9,9,1,brak\n")
+        .expect_err("is no call")
+        .to_string();
+    assert!(call.contains("line 2: `call`: brak is none of"), "{call}");
     let code = found(&drive, "adc_1,adc_2,hall\n1,2,9\n")
         .expect_err("is no code")
         .to_string();
@@ -216,4 +228,52 @@ fn glitches_are_counted_and_move_no_edge() {
     for (edge, other) in halls.edges.iter().zip(&sound.edges) {
         assert!((edge.angle - other.angle).abs() < 0.5, "{edge:?} {other:?}");
     }
+}
+
+/// What makes angles doubtful shows in the figures.
+#[test]
+fn unequal_gains_and_drifting_offsets_show() {
+    let drive = drive("trivedi-keshri-660w");
+    let mut unequal = plant_of(&drive.spec);
+    unequal.adc[0].amperes_per_count *= 1.1;
+    let halls = found(&drive, &turned(&drive, unequal, 0.1, &STROKES)).expect("tells");
+    assert!(
+        (0.85..0.95).contains(&halls.roundness),
+        "{}",
+        halls.roundness
+    );
+    // An offset that grows to eight counts.
+    let log = turned(&drive, plant_of(&drive.spec), 0.1, &STROKES);
+    let rows = log.lines().count();
+    let drifting = log
+        .lines()
+        .enumerate()
+        .fold(String::new(), |log, (line, text)| {
+            let (count, rest) = text.split_once(',').expect("columns");
+            match count.parse::<usize>() {
+                Ok(count) => format!("{log}{},{rest}\n", count + 8 * line * line / (rows * rows)),
+                Err(_) => format!("{log}{text}\n"),
+            }
+        });
+    let halls = found(&drive, &drifting).expect("tells");
+    let spread = halls
+        .edges
+        .iter()
+        .map(|edge| edge.spread)
+        .fold(0.0, f64::max);
+    assert!(spread > 4.0, "{spread}");
+}
+
+#[test]
+fn rows_may_lie_several_periods_apart() {
+    let drive = drive("trivedi-keshri-660w");
+    let log = turned(&drive, plant_of(&drive.spec), 0.1, &STROKES);
+    let (head, rows) = log.split_once('\n').expect("a header");
+    let kept: Vec<&str> = rows.lines().step_by(10).collect();
+    let sparse = format!("{head}\n{}\n", kept.join("\n"));
+    let halls = find(&drive, sparse.as_bytes(), 10.0 * drive.spec.inverter.t_s).expect("tells");
+    for (edge, place) in halls.edges.iter().zip(drive.spec.motor.hall_angles) {
+        assert!((edge.angle - place).abs() < 1.0, "{edge:?} at {place}");
+    }
+    assert!((halls.emf_constant / drive.spec.motor.emf_constant - 1.0).abs() < 0.03);
 }

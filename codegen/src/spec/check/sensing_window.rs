@@ -38,12 +38,20 @@ pub(super) fn check(
     let needed = window.before.max(window.after);
     if needed > half_low * (1.0 + 1e-9) {
         let default = |time: f64| move || engineering(time, "s");
-        let parts = [
-            reader.part("settling_time", default(times.settling)),
-            reader.part("dead_time", default(0.0)),
-            reader.part("aperture_time", default(times.aperture)),
-            reader.part("conversion_time", default(times.conversion)),
+        let is_before = window.before >= window.after;
+        let mut parts = [
+            ("settling_time", times.settling, true),
+            ("dead_time", dead_time, true),
+            ("sampling_lead", times.lead, true),
+            ("aperture_time", times.aperture, false),
+            ("conversion_time", times.conversion, false),
         ];
+        // The longest time of the longer side first: the error points at it.
+        let weight = |time: f64, before: bool| if before == is_before { time } else { 0.0 };
+        parts.sort_by(|(_, one, one_before), (_, other, other_before)| {
+            weight(*other, *other_before).total_cmp(&weight(*one, *one_before))
+        });
+        let parts = parts.map(|(name, time, _)| reader.part(name, default(time)));
         errors.push(catalogue::sensing_window(
             &parts,
             period,

@@ -50,7 +50,8 @@ const DEAD_TIME: u8 = match specified_dead_time(HubDrive::SPEC, TIMER_HZ) {
     None => panic!("the specification states no dead time, or one that the timer cannot make"),
 };
 /// Where the comparators cut the outputs: 25 A above the mid-scale of the op-amps, at their inputs.
-/// The ADCs see 16 times as much, and both go by the same reference.
+/// The ADCs see 16 times as much, and both go by the same reference. Counts rise with current out of the motor: a current
+/// into one phase is seen in the other two, through which it leaves.
 const OVER_CURRENT: u16 = (2048 + 850) / 16;
 
 bind_interrupts!(struct Irqs {

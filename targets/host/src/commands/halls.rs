@@ -153,13 +153,13 @@ fn doubts(found: &Halls) -> Option<String> {
     let hystereses = || found.edges.iter().filter_map(|edge| edge.hysteresis);
     if found.roundness < LEAST_ROUNDNESS {
         return Some(format!(
-            "the currents are {:.0} % as large in one direction as in another: gains of the sensors differ (`adc_gain` as a list), or the windings",
+            "the currents are {:.0} % as large in one direction as in another: gains of the sensors differ (`adc_gain` as a list), or counts clip, or an offset drifts",
             100.0 * found.roundness
         ));
     }
     if spread > MOST_SPREAD {
         return Some(format!(
-            "the passes of an edge lie up to {spread:.0} deg apart: offsets that drift, counts that clip, or turns that are too fast"
+            "the passes of an edge lie up to {spread:.0} deg apart: offsets that drift, counts that clip, or rows that lie not as far apart as `--every` says"
         ));
     }
     let lag = hystereses().find(|lag| !LIKELY_HYSTERESIS.contains(lag))?;

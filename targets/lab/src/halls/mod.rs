@@ -120,9 +120,10 @@ fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
     let mut has_calls = false;
     let mut is_short = true;
     for row in rows(log)? {
-        let (row, at) = row?;
-        row.check(&spec.inverter).map_err(&at)?;
-        if let Some(call) = row.call().map_err(&at)? {
+        let (row, line) = row?;
+        let at = |what: String| line.error(&what);
+        row.check(&spec.inverter).map_err(at)?;
+        if let Some(call) = row.call().map_err(at)? {
             if !std::mem::replace(&mut has_calls, true) {
                 stretches.clear();
             }
@@ -130,7 +131,7 @@ fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
             stretches.push(Vec::new());
         }
         if is_short && let Some(stretch) = stretches.last_mut() {
-            check_range(spec, &row).map_err(&at)?;
+            check_range(spec, &row).map_err(at)?;
             stretch.push(Reading {
                 current: flux::current(spec, row.counts()),
                 hall: row.hall,
