@@ -2,7 +2,7 @@
 
 use hexagen_codegen::spec::InverterSpec;
 use serde::Deserialize;
-use std::io::Read;
+use std::io::{Cursor, Read};
 
 /// One period of a log, a row of CSV: what the program passed to the drive. An empty set-point leaves the
 /// last one.
@@ -84,15 +84,23 @@ impl Line {
 
 /// The rows of a log, each with its line.
 pub(crate) fn rows(
-    log: impl Read,
+    mut log: impl Read,
 ) -> Result<impl Iterator<Item = Result<(LogRow, Line), LogError>>, LogError> {
+    let mut text = String::new();
+    log.read_to_string(&mut text)
+        .map_err(|error| LogError(error.to_string()))?;
+    // A blank line is no record.
+    let numbers: Vec<u64> = (text.lines().zip(1..))
+        .filter(|(line, _)| !line.is_empty())
+        .map(|(_, number)| number)
+        .collect();
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(log);
+        .from_reader(Cursor::new(text));
     let columns = reader.headers()?.clone();
-    Ok(reader.into_records().map(move |record| {
-        let record = record?;
-        let line = Line(record.position().map_or(0, csv::Position::line));
+    let records = reader.into_records().zip(numbers.into_iter().skip(1));
+    Ok(records.map(move |(record, number)| {
+        let (record, line) = (record?, Line(number));
         let row = record.deserialize(Some(&columns));
         let row = row.map_err(|error| line.error(&cell(&error, &columns, &record)))?;
         Ok((row, line))

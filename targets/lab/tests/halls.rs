@@ -176,11 +176,8 @@ fn a_log_that_does_not_tell_the_angle_is_refused_with_the_reason() {
             told(sound(), 0.004, &STROKES),
             "counts to either side, 20 are needed",
         ),
-        (told(sound(), 0.1, &[1.2]), "at least 2 electrical ones"),
-        (
-            told(sound(), 0.1, &[0.3]),
-            "the rotor was turned too little",
-        ),
+        (told(sound(), 0.1, &[1.2]), "turn it farther, by at least 2"),
+        (told(sound(), 0.1, &[0.3]), "turn it farther"),
         (told(dead, 0.1, &STROKES), "never changing: Hb;"),
         (told(sound(), 0.98, &STROKES), "beyond the trip level"),
     ] {

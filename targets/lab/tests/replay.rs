@@ -142,7 +142,26 @@ fn a_log_that_does_not_fit_is_told_with_its_line() {
             "line 2: `call`: go is none of",
         ),
         ("adc_1,adc_2,hall,ticks,amps\n2048,2048,1,5,1\n", "amps"),
-        ("adc_1,adc_2,hall,ticks\n2048,x,1,5\n", "line: 2"),
+        (
+            "adc_1,adc_2,hall,ticks\n2048,x,1,5\n",
+            "line 2: `adc_2`: `x` is no whole number",
+        ),
+        (
+            "adc_1,adc_2,hall,ticks,current_a\n2048,2048,1,5,NaN\n",
+            "line 2: `current_a`: NaN is outside",
+        ),
+        (
+            "adc_1,adc_2,hall,ticks,torque_nm\n2048,2048,1,5,1e30\n",
+            "line 2: `torque_nm`: 1000000000000000000000000000000 is outside",
+        ),
+        (
+            "adc_1,adc_2,hall,ticks,speed_rpm\n2048,2048,1,5,100\n",
+            "line 2: `speed_rpm`: the drive has no speed loop",
+        ),
+        (
+            "adc_1,adc_2,hall,ticks,bus\n2048,2048,1,5,100\n",
+            "line 2: `bus`: the drive measures no bus",
+        ),
         ("adc_1,adc_2,hall,ticks\n", "no periods"),
     ] {
         let error = replay(&drive, log.as_bytes(), Vec::new()).expect_err(log);

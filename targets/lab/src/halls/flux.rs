@@ -6,6 +6,7 @@
 use super::Reading;
 use crate::plant::clarke;
 use hexagen_codegen::spec::{MotorSpec, Spec};
+use nalgebra::{Matrix2, Matrix5, Vector2, Vector5};
 use std::f64::consts::TAU;
 
 /// A vector in the stationary plane.
@@ -77,36 +78,42 @@ pub(super) struct Circle {
 }
 
 impl Circle {
-    /// The circle nearest to the points, by the least squares of Kasa; none where they do not surround anything.
+    /// The circle about the ellipse nearest to the points, `a x^2 + b x y + c y^2 + d x + e y = 1` by least squares,
+    /// which does not mind that some parts of the turn have more points; none where they do not surround anything.
     pub fn of(flux: &[Vector]) -> Option<Self> {
         let apart = apart(flux);
         let count = apart.len() as f64;
         let points = || apart.iter().map(|place| flux[*place]);
         let mean: Vector =
             std::array::from_fn(|x| points().map(|point| point[x]).sum::<f64>() / count);
-        let about = |point: Vector| [point[0] - mean[0], point[1] - mean[1]];
-        let moment =
-            |f: &dyn Fn(Vector) -> f64| points().map(|point| f(about(point))).sum::<f64>() / count;
-        let (xx, yy, xy) = (
-            moment(&|[x, _]| x * x),
-            moment(&|[_, y]| y * y),
-            moment(&|[x, y]| x * y),
-        );
-        let cubic = [0, 1].map(|own| moment(&|v: Vector| v[own] * (v[0] * v[0] + v[1] * v[1])));
-        let determinant = xx * yy - xy * xy;
-        if apart.len() < 12 || determinant <= 0.0 {
+        let scale = points()
+            .map(|[x, y]| (x - mean[0]).hypot(y - mean[1]))
+            .sum::<f64>()
+            / count;
+        if apart.len() < 12 || scale <= 0.0 {
             return None;
         }
-        let own = [
-            0.5 * (cubic[0] * yy - cubic[1] * xy) / determinant,
-            0.5 * (cubic[1] * xx - cubic[0] * xy) / determinant,
-        ];
-        // Principal axes of the points.
-        let (sum, difference) = (xx + yy, (xx - yy).hypot(2.0 * xy));
-        Some(Self {
-            centre: [mean[0] + own[0], mean[1] + own[1]],
-            radius: (own[0] * own[0] + own[1] * own[1] + xx + yy).sqrt(),
-            roundness: ((sum - difference).max(0.0) / (sum + difference)).sqrt(),
+        let (mut normal, mut right) = (Matrix5::zeros(), Vector5::zeros());
+        for point in points() {
+            let [x, y] = [0, 1].map(|own| (point[own] - mean[own]) / scale);
+            let row = Vector5::new(x * x, x * y, y * y, x, y);
+            normal += row * row.transpose();
+            right += row;
+        }
+        let fit = normal.cholesky()?.solve(&right);
+        let form = Matrix2::new(fit[0], 0.5 * fit[1], 0.5 * fit[1], fit[2]);
+        let linear = Vector2::new(fit[3], fit[4]);
+        let own = form.try_inverse()? * linear * -0.5;
+        let axes = form.symmetric_eigenvalues();
+        let (least, most) = (axes.min(), axes.max());
+        // The form about the centre; a hyperbola has no radius.
+        let level = 1.0 - 0.5 * linear.dot(&own);
+        let is_ellipse = least > 0.0 && level > 0.0;
+        let radius = (level / (least * most).sqrt()).sqrt();
+        is_ellipse.then(|| Self {
+            centre: [mean[0] + scale * own.x, mean[1] + scale * own.y],
+            radius: scale * radius,
+            roundness: (least / most).sqrt(),
             apart,
         })
     }

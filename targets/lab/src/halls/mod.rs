@@ -79,8 +79,13 @@ pub fn find(drive: &Prepared, log: impl Read, row_time: f64) -> Result<Halls, Lo
     let passes = passes(&readings);
     let mut flux = flux::integrated(&spec.motor, row_time, &readings);
     flux::without_drift(&mut flux, &passes.repeated());
-    let circle = Circle::of(&flux).ok_or_else(|| small(spec, &readings))?;
-    check_signal(spec, &readings, &circle)?;
+    if swing(&readings) < LEAST_COUNTS * spec.inverter.adc_gain.abs() {
+        return Err(small(spec, &readings));
+    }
+    let circle = Circle::of(&flux).ok_or_else(|| flat(0.0))?;
+    if circle.roundness < LEAST_ROUNDNESS {
+        return Err(flat(circle.roundness));
+    }
     let angles: Vec<f64> = flux.iter().map(|point| circle.angle(*point)).collect();
     let turned = Turned::of(&angles, &circle.apart);
     if turned.forward + turned.backward < LEAST_TURNS * TAU {
@@ -181,19 +186,13 @@ fn swing(readings: &[Reading]) -> f64 {
     0.5 * width(0).max(width(1))
 }
 
-/// Whether the currents are large enough, and those of three sound sensors.
-fn check_signal(spec: &Spec, readings: &[Reading], circle: &Circle) -> Result<(), LogError> {
-    if swing(readings) < LEAST_COUNTS * spec.inverter.adc_gain.abs() {
-        return Err(small(spec, readings));
-    }
-    if circle.roundness < LEAST_ROUNDNESS {
-        return Err(LogError(format!(
-            "the currents are not those of three equal phases: their ellipse is {:.0} % as wide as long; a sensor has the wrong sign (`adc_inverted`), \
-             gain or phase (`sensed_phases`), its offset drifts, a phase is open, or the rotor was turned too little",
-            100.0 * circle.roundness
-        )));
-    }
-    Ok(())
+/// Currents that are not those of three sound sensors.
+fn flat(roundness: f64) -> LogError {
+    LogError(format!(
+        "the currents are not those of three equal phases: their ellipse is {:.0} % as wide as long; a sensor has the wrong sign (`adc_inverted`), \
+         gain or phase (`sensed_phases`), its offset drifts, a phase is open, or the rotor was turned too little",
+        100.0 * roundness
+    ))
 }
 
 /// How far the rotor turns, radians.
