@@ -31,9 +31,12 @@ struct Run {
 /// The text of a library motor with more fields of its inverter, on its bus times `share`.
 fn text(motor: &str, fields: &str, share: f64) -> MotorSource {
     let source = MotorSource::of_library(motor).expect("a motor of the library");
+    let is_replaced =
+        |line: &&str| line.starts_with("current_sensing") && fields.contains("current_sensing");
     let lines = source
         .text
         .lines()
+        .filter(|line| !is_replaced(line))
         .map(|line| match line.strip_prefix("bus_voltage = \"") {
             Some(volts) => {
                 let volts: f64 = volts.trim_end_matches(" V\"").parse().expect("volts");

@@ -109,9 +109,9 @@ fn a_new_file_on_a_board_leaves_out_what_the_board_states() {
     let text = fs::read_to_string(path).expect("is there");
     assert!(text.contains("\nboard = \"st-b-g431b-esc1\"\n"), "{text}");
     for field in OF_BOARD {
-        assert!(!text.contains(field), "{field}: {text}");
+        assert!(!text.contains(&format!("\n{field}")), "{field}: {text}");
     }
-    assert!(text.contains("hall_timer_clock"), "{text}");
+    assert!(text.contains("\n# hall_timer_clock"), "{text}");
     let said = run(["check", path]);
     assert!(said.stdout.contains("29.37 mA a count"), "{said:?}");
     let other = folder.path().join("other.toml");

@@ -185,8 +185,10 @@ fn conversions_one_after_the_other_are_compared_with_both_at_once() {
     let path = folder.path().join("one-adc.toml");
     let motor = MotorSource::of_library(PAPER).expect("is in the library");
     let sensing = "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\n\
-                   conversion_time = \"1 us\"\nmax_current";
-    let text = motor.text.replacen("max_current", sensing, 1);
+                   conversion_time = \"1 us\"\n";
+    let text = motor
+        .text
+        .replacen("current_sensing = \"in_phase\"\n", sensing, 1);
     std::fs::write(&path, text).expect("can be written");
     let path = path.to_str().expect("a plain path");
     let options = ["--controller", "pdcc", "--start-angle", "0.1", "--json"];
