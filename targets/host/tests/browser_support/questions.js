@@ -18,14 +18,21 @@ async function unfold(isOpen) {
   await drawAll();
 }
 
-// Number of plots, and of those on whose canvas something is drawn.
-function drawnPlots() {
-  const hasInk = ({ u }) => {
-    const { width, height } = u.ctx.canvas;
-    return u.ctx.getImageData(0, 0, width, height).data.some((value) => value > 0);
-  };
-  return [plots.length, plots.filter(({ u }) => u).filter(hasInk).length];
+// A copy of a canvas to read from: reading from the page's own one often is a warning.
+const copy = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
+
+// What a plot's canvas shows, as one number; 0 if nothing.
+function inkOf({ u }) {
+  const { width, height } = u.ctx.canvas;
+  [copy.canvas.width, copy.canvas.height] = [width, height];
+  copy.drawImage(u.ctx.canvas, 0, 0);
+  const pixels = new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
+  return pixels.reduce((sum, pixel, place) => (sum + pixel * (1 + (place % 97))) % 2 ** 40, 0);
 }
+
+// Plots without a drawing.
+const undrawn = () =>
+  plots.filter((entry) => !entry.u || inkOf(entry) === 0).map(({ holder }) => holder.ariaLabel);
 
 // Texts and boxes that cover each other or stick out of the window.
 function faults() {
@@ -111,23 +118,127 @@ const told = (plot) => plots[plot].u.root.querySelector(".u-legend, .readout").i
 
 const scaleOf = (plot) => ["min", "max"].map((end) => Math.round(plots[plot].u.scales.x[end]));
 
-// Names in legends that switch nothing.
-function deadNames() {
+// Names in legends that switch nothing, or leave the drawing as it was.
+async function deadNames() {
   const dead = [];
-  for (const { u, plot } of plots) {
-    plot.series.forEach((of, k) => {
+  for (const entry of plots) {
+    const { u, plot, holder } = entry;
+    for (const [k, of] of plot.series.entries()) {
       const name = u.root.querySelectorAll(".u-series")[k + 1]?.querySelector("th");
-      const before = u.series[k + 1].show;
+      const state = () => [u.series[k + 1].show, name?.getAttribute("aria-pressed")].join();
+      const [before, drawn] = [state(), inkOf(entry)];
       name?.click();
-      const after = u.series[k + 1].show;
+      await null;
+      const [after, redrawn] = [state(), inkOf(entry)];
       name?.click();
-      if (before === after || u.series[k + 1].show !== before) dead.push(of.name);
-    });
+      await null;
+      const isDrawn = of.x.length > 0;
+      if (before === after || state() !== before || (isDrawn && drawn === redrawn)) {
+        dead.push(`${of.name} of ${holder.ariaLabel}`);
+      }
+    }
   }
   return dead;
 }
 
+// Bars of the page that are tall enough to be pointed at: plot, series and place.
+const barsOfPage = () =>
+  plots.flatMap(({ plot }, at) =>
+    plot.bars.flatMap((of) => {
+      const [low, high] = plot.y.range;
+      const isTall = (k) => of.y[k] > low + 0.1 * (high - low);
+      return of.x.map((_, k) => ({ at, of, k })).filter(({ k }) => isTall(k));
+    }),
+  ).filter((_, place) => place % 7 === 0);
+
+// The window's point in the lower part of a bar.
+function placeOfBar(bar) {
+  const { at, of, k } = barsOfPage()[bar];
+  const { u, plot } = plots[at];
+  u.over.scrollIntoView({ block: "center", behavior: "instant" });
+  const rect = u.over.getBoundingClientRect();
+  const [low, high] = plot.y.range;
+  const x = u.valToPos(of.x[k] + (of.ends[0] + of.ends[1]) / 2, "x");
+  return [rect.left + x, rect.top + u.valToPos(low + 0.04 * (high - low), "y")];
+}
+
+// A bar below the mouse whose name is not marked alone, or whose value is not told.
+function untoldOfBar(bar) {
+  const { at, of, k } = barsOfPage()[bar];
+  const { u, plot } = plots[at];
+  const names = [...u.root.querySelectorAll(".u-series.below")].map((row) => row.innerText);
+  const value = digits(of.y[k], plot.y);
+  const isTold = names.length === 1 && names[0].includes(of.name) && names[0].includes(value);
+  return isTold ? [] : [`${of.name} ${value}: ${names.join()}`];
+}
+
 // Other controls ----------------------------------------------------------------------------------
+
+// Controls of each kind that a test presses.
+const TESTED = {
+  plots: ".u-over",
+  names: ".u-series:not(:first-child) th",
+  switches: "button[data-variant]",
+  headings: "button.sort",
+  links: ".linked button, .linked .line",
+  details: "summary",
+  anchors: "a[href^='#']",
+};
+
+const kindsOfControls = () =>
+  Object.keys(TESTED).filter((kind) => document.querySelector(TESTED[kind]) != null);
+
+const controls = () => [
+  ...document.querySelectorAll("a, button, summary, input, select, textarea, [role=button], [tabindex]"),
+];
+
+// Controls of a kind that no test presses.
+const untestedControls = () =>
+  controls()
+    .filter((of) => !of.matches(Object.values(TESTED).join()))
+    .map(about);
+
+// What looks as if it reacted to the mouse but that no key reaches.
+const mouseOnly = () =>
+  [...document.querySelectorAll("body *")]
+    .filter((of) => getComputedStyle(of).cursor === "pointer" && isSeen(of))
+    .filter((of) => !of.closest("a, button, summary, [tabindex]"))
+    .map(about)
+    .slice(0, 10);
+
+// Controls that do not take the focus, or do not show it.
+function unfocusable() {
+  const found = controls().filter((of) => {
+    if (!isSeen(of)) return false;
+    of.focus({ focusVisible: true });
+    const { outlineStyle, outlineWidth } = getComputedStyle(of);
+    const isShown = outlineStyle !== "none" && parseFloat(outlineWidth) >= 1;
+    return document.activeElement !== of || !isShown;
+  });
+  return found.map(about).slice(0, 10);
+}
+
+// What a key can change of the page.
+const state = () =>
+  JSON.stringify([
+    plots.map(({ u }) => u.series.map((of) => of.show)),
+    [...document.querySelectorAll(".linked-to")].map((of) => of.textContent),
+  ]);
+
+// Elements with the role of a button that Enter or the space bar does not press.
+function deadKeys() {
+  const dead = [];
+  for (const control of document.querySelectorAll("[role=button]")) {
+    for (const key of ["Enter", " "]) {
+      document.querySelectorAll(".linked-to").forEach((of) => of.classList.remove("linked-to"));
+      const before = state();
+      const event = new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true });
+      control.dispatchEvent(event);
+      if (state() === before) dead.push(`${about(control)}, ${key}`);
+    }
+  }
+  return dead.slice(0, 10);
+}
 
 // What of the page a switch can change.
 const shown = () =>
@@ -138,7 +249,6 @@ const shown = () =>
 
 function deadSwitches() {
   const buttons = [...document.querySelectorAll("button[data-variant]")];
-  if (buttons.length === 0) return ["no switches"];
   return buttons
     .filter((button) => {
       const before = shown();
@@ -154,7 +264,6 @@ function deadSwitches() {
 // Headings whose click leaves their column unsorted, upwards or downwards.
 function deadHeadings() {
   const buttons = [...document.querySelectorAll("button.sort")];
-  if (buttons.length === 0) return ["no headings"];
   return buttons
     .filter((button) => {
       const heading = button.closest("th");
@@ -173,9 +282,8 @@ function deadHeadings() {
 // Fields, formulas and lines of formulas that mark nothing in another pane.
 function deadLinks() {
   const box = document.querySelector(".linked");
-  if (!box) return ["no links"];
   const dead = [];
-  for (const control of box.querySelectorAll("button")) {
+  for (const control of box?.querySelectorAll("button, .line[role]") ?? []) {
     control.click();
     const panes = [...box.querySelectorAll(".pane")];
     const marked = panes.filter((pane) => pane.querySelector(".linked-to"));
@@ -188,8 +296,14 @@ function deadLinks() {
 function linkedTo(selector, text) {
   const box = document.querySelector(".linked");
   [...box.querySelectorAll(selector)].find((node) => node.textContent.includes(text)).click();
-  return [...box.querySelectorAll(".linked-to")].map((node) => node.textContent.trim().slice(0, 60));
+  return marked();
 }
+
+const marked = () =>
+  [...document.querySelectorAll(".linked-to")].map((node) => node.textContent.trim().slice(0, 60));
+
+const markedPanes = () =>
+  [...document.querySelectorAll(".pane")].map((pane) => pane.querySelector(".linked-to") != null);
 
 function deadDetails() {
   return [...document.querySelectorAll("details")]
