@@ -44,6 +44,7 @@ fn nothing_overlaps_at_three_widths() {
                 page.assert_none("faults()");
             }
             page.assert_none("undrawn()");
+            page.assert_none("misstatedTicks()");
             page.assert_no_errors();
         }
     }

@@ -173,7 +173,8 @@ function axis(of, isUpright) {
   } else {
     options.values = (u, splits) => {
       const step = splits.length > 1 ? splits[1] - splits[0] : 1;
-      const places = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+      const isExact = (places) => Math.abs(step - step.toFixed(places)) < 1e-6 * step;
+      const places = [...Array(10).keys()].find(isExact) ?? 9;
       return splits.map((at) => (at == null ? "" : at.toFixed(places).replace("-", "\u2212")));
     };
   }

@@ -27,7 +27,9 @@ function inkOf({ u }) {
   [copy.canvas.width, copy.canvas.height] = [width, height];
   copy.drawImage(u.ctx.canvas, 0, 0);
   const pixels = new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
-  return pixels.reduce((sum, pixel, place) => (sum + pixel * (1 + (place % 97))) % 2 ** 40, 0);
+  let sum = 0;
+  for (const pixel of pixels) sum = Math.imul(sum, 31) + pixel;
+  return sum;
 }
 
 // Plots without a drawing.
@@ -118,15 +120,30 @@ const told = (plot) => plots[plot].u.root.querySelector(".u-legend, .readout").i
 
 const scaleOf = (plot) => ["min", "max"].map((end) => Math.round(plots[plot].u.scales.x[end]));
 
+// Labels of ticks that state another number than their place's.
+function misstatedTicks() {
+  const wrong = [];
+  for (const { u, plot, holder } of plots) {
+    for (const [k, { ticks }] of [plot.x, plot.y].entries()) {
+      const { _splits: places, _values: labels } = u.axes[k];
+      const isWrong = (label, at) =>
+        label !== "" && Math.abs(label.replace("\u2212", "-") - places[at]) > 1e-3 * Math.abs(places[1] - places[0]);
+      if (!ticks) wrong.push(...labels.filter(isWrong).map((label) => `${label} of ${holder.ariaLabel}`));
+    }
+  }
+  return wrong.slice(0, 10);
+}
+
 // Names in legends that switch nothing, or leave the drawing as it was.
 async function deadNames() {
   const dead = [];
   for (const entry of plots) {
     const { u, plot, holder } = entry;
+    const drawn = inkOf(entry);
     for (const [k, of] of plot.series.entries()) {
       const name = u.root.querySelectorAll(".u-series")[k + 1]?.querySelector("th");
       const state = () => [u.series[k + 1].show, name?.getAttribute("aria-pressed")].join();
-      const [before, drawn] = [state(), inkOf(entry)];
+      const before = state();
       name?.click();
       await null;
       const [after, redrawn] = [state(), inkOf(entry)];
