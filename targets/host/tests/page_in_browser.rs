@@ -11,21 +11,25 @@ use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
     MouseMoved, MousePressed, MouseReleased,
 };
 use hexagen_host::render;
+use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Page, reproduction_page, results_page};
+use hexagen_lab::results::Plan;
 use serde_json::Value;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// The report of a motor.
-static REPORT: LazyLock<PathBuf> = LazyLock::new(|| file(&results_page(&report_support::data())));
+static REPORT: LazyLock<PathBuf> =
+    LazyLock::new(|| file(&results_page(&report_support::data()), "browser"));
 
 /// The paper's experiment.
 static EXPERIMENT: LazyLock<PathBuf> =
-    LazyLock::new(|| file(&reproduction_page(&reproduction_support::data())));
+    LazyLock::new(|| file(&reproduction_page(&reproduction_support::data()), "browser"));
 
-/// A page's file.
-fn file(page: &Page) -> PathBuf {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("browser");
+/// A page's file in a folder of this test.
+fn file(page: &Page, folder: &str) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     render::write(page, &dir).expect("the page is written")
 }
 
@@ -35,18 +39,45 @@ fn both(width: u32, scheme: &str) -> impl Iterator<Item = Open> {
     files.filter_map(move |file| open(file, width, scheme))
 }
 
+/// Opens a page's file at each width, where nothing overlaps.
+fn assert_nothing_overlaps(file: &Path) {
+    for width in [390, 768, 1280] {
+        let Some(page) = open(file, width, "light") else {
+            return;
+        };
+        for unfolded in [false, true] {
+            page.ask(&format!("unfold({unfolded})"));
+            page.assert_none("faults()");
+        }
+        page.assert_none("undrawn()");
+        page.assert_none("misstatedTicks()");
+        page.assert_no_errors();
+    }
+}
+
 #[test]
 fn nothing_overlaps_at_three_widths() {
-    for width in [390, 768, 1280] {
-        for page in both(width, "light") {
-            for unfolded in [false, true] {
-                page.ask(&format!("unfold({unfolded})"));
-                page.assert_none("faults()");
-            }
-            page.assert_none("undrawn()");
-            page.assert_none("misstatedTicks()");
-            page.assert_no_errors();
-        }
+    assert_nothing_overlaps(&REPORT);
+    assert_nothing_overlaps(&EXPERIMENT);
+}
+
+/// Greatest size of a library motor's page in bytes, well below a megabyte.
+const MOST: u64 = 850_000;
+
+/// The real page of each library motor, a minute's simulation.
+#[test]
+#[ignore = "takes a quarter of an hour: `cargo xtask nightly` runs it"]
+fn every_motors_page_is_small_and_nothing_overlaps() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("is read");
+    for motor in motors {
+        let name = motor.source.name;
+        let plan = Plan::of(&name).expect("a motor of the library");
+        let (data, _) = plan.run(&()).expect("every variant runs");
+        let file = file(&results_page(&data), "motors");
+        let size = fs::metadata(&file).expect("it is there").len();
+        println!("{name}: {size} bytes");
+        assert!(size <= MOST, "{name}: {size} bytes of at most {MOST}");
+        assert_nothing_overlaps(&file);
     }
 }
 
