@@ -49,27 +49,25 @@ function faults() {
     const names = wide.slice(0, 3).map(about).join(", ");
     found.push(`the page is ${document.documentElement.scrollWidth} wide: ${names}`);
   }
-  const rects = new Map();
-  for (const node of boxes) {
-    const rect = node.getBoundingClientRect();
+  // A text that is broken covers its lines, not the box around them.
+  const pieces = boxes.flatMap((node) => {
     const scrolls = node.closest(".scroll, .pane, pre, .sheet");
-    const shown = scrolls && scrolls !== node ? scrolls.getBoundingClientRect() : rect;
+    const rect = node.getBoundingClientRect();
     if (!scrolls && (rect.right > innerWidth + 1 || rect.left < -1)) found.push(`sticks out: ${about(node)}`);
     // What a box scrolls away covers nothing.
-    const right = Math.min(rect.right, shown.right);
-    const bottom = Math.min(rect.bottom, shown.bottom);
-    rects.set(node, { left: rect.left, top: rect.top, right, bottom, scrolls });
-  }
-  const sorted = boxes.sort((a, b) => rects.get(a).top - rects.get(b).top);
-  sorted.forEach((one, place) => {
-    const a = rects.get(one);
-    for (const other of sorted.slice(place + 1)) {
-      const b = rects.get(other);
+    const shown = scrolls && scrolls !== node ? scrolls.getBoundingClientRect() : { right: Infinity, bottom: Infinity };
+    return [...node.getClientRects()].map(({ left, top, right, bottom }) => ({
+      node, left, top, right: Math.min(right, shown.right), bottom: Math.min(bottom, shown.bottom),
+    }));
+  });
+  const sorted = pieces.sort((a, b) => a.top - b.top);
+  sorted.forEach((a, place) => {
+    for (const b of sorted.slice(place + 1)) {
       if (b.top >= a.bottom - 1) break;
       const across = Math.min(a.right, b.right) - Math.max(a.left, b.left);
       const along = Math.min(a.bottom, b.bottom) - b.top;
-      if (across <= 1 || along <= 1 || one.contains(other) || other.contains(one)) continue;
-      found.push(`${about(one)} and ${about(other)}`);
+      if (across <= 1 || along <= 1 || a.node.contains(b.node) || b.node.contains(a.node)) continue;
+      found.push(`${about(a.node)} and ${about(b.node)}`);
     }
   });
   return found.slice(0, 10);
