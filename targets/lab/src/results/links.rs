@@ -128,13 +128,12 @@ fn unstated_of(section: &'static str, ast: &SpecAst) -> Vec<Changed> {
     let all = unstated(&spec).into_iter();
     let of_section = all.filter(|field| field.section == section && !field.is_stated_in(ast));
     let changed = of_section.map(|field| {
-        let others = match &field.other {
-            Some(other) => vec![unstated::stating(ast, section, other)],
-            None => {
-                let stated = field.stated(ast);
-                let value = &stated_value(&stated, section, field.name);
-                changes(section, field.name, value, &stated)
-            }
+        let others = if let Some(other) = &field.other {
+            vec![unstated::stating(ast, section, other)]
+        } else {
+            let stated = field.stated(ast);
+            let value = &stated_value(&stated, section, field.name);
+            changes(section, field.name, value, &stated)
         };
         (section, field.name.to_owned(), field.value, true, others)
     });

@@ -49,9 +49,10 @@ pub fn stating(ast: &SpecAst, section: &str, lines: &str) -> SpecAst {
 
 /// A field in a file. Lists stand there as they are, all else in quotes.
 fn line(name: &str, value: &str) -> String {
-    match value.starts_with('[') {
-        true => format!("{name} = {value}\n"),
-        false => format!("{name} = \"{value}\"\n"),
+    if value.starts_with('[') {
+        format!("{name} = {value}\n")
+    } else {
+        format!("{name} = \"{value}\"\n")
     }
 }
 
