@@ -1,279 +1,234 @@
-//! The report's page in headless Chromium: no errors, nothing overlaps, every control does
-//! something.
+//! The pages in headless Chromium: no errors, nothing overlaps, every control does something.
+//!
+//! The checks are the same for the report of a motor and for the paper's experiment.
 
+mod browser_support;
 mod report_support;
+mod reproduction_support;
 
-use headless_chrome::protocol::cdp::types::Event;
-use headless_chrome::protocol::cdp::{Emulation, Input};
-use headless_chrome::{Browser, LaunchOptions, Tab};
+use browser_support::{Open, open};
+use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
+    MouseMoved, MousePressed, MouseReleased,
+};
 use hexagen_host::render;
-use hexagen_lab::report::results_page;
+use hexagen_lab::engine::{PlantOptions, SelectedMotor};
+use hexagen_lab::report::{Page, reproduction_page, results_page};
+use hexagen_lab::results::Plan;
 use serde_json::Value;
-use std::ffi::OsStr;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, LazyLock, Mutex};
+use std::sync::LazyLock;
 
-/// The page's file.
-static FILE: LazyLock<PathBuf> = LazyLock::new(|| {
-    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join("browser");
-    render::write(&results_page(&report_support::data()), &dir).expect("the page is written")
-});
+/// The report of a motor.
+static REPORT: LazyLock<PathBuf> =
+    LazyLock::new(|| file(&results_page(&report_support::data()), "browser"));
 
-/// What the tests ask a page for.
-const HELPERS: &str = include_str!("page_in_browser.js");
+/// The paper's experiment.
+static EXPERIMENT: LazyLock<PathBuf> =
+    LazyLock::new(|| file(&reproduction_page(&reproduction_support::data()), "browser"));
 
-/// A page in a browser of its own, with what its console said.
-struct Open {
-    tab: Arc<Tab>,
-    errors: Arc<Mutex<Vec<String>>>,
-    /// Ends with its browser.
-    _browser: Browser,
+/// A page's file in a folder of this test.
+fn file(page: &Page, folder: &str) -> PathBuf {
+    let dir = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    render::write(page, &dir).expect("the page is written")
 }
 
-/// Opens the page at a width; `None`, with a message, without a browser outside of continuous
-/// integration.
-fn open(width: u32, scheme: &str) -> Option<Open> {
-    let args = ["--disable-quic", "--disable-component-update"].map(OsStr::new);
-    let options = LaunchOptions {
-        // Containers of continuous integration run as root, where Chromium has no sandbox. The page
-        // is our own.
-        sandbox: false,
-        args: args.to_vec(),
-        ..LaunchOptions::default()
-    };
-    let browser = match Browser::new(options) {
-        Ok(browser) => browser,
-        Err(error) => {
-            let message = format!(
-                "Chromium is missing, in which the page is tested; install it: `apt-get install --no-install-recommends chromium` \
-                 as root on Debian, else from https://www.chromium.org, or name it by CHROME ({error})"
-            );
-            assert!(std::env::var_os("CI").is_none(), "{message}");
-            eprintln!("NOT TESTED: {message}");
-            return None;
-        }
-    };
-    let tab = browser.new_tab().expect("a tab");
-    let errors = Arc::new(Mutex::new(Vec::new()));
-    let seen = Arc::clone(&errors);
-    let listener = move |event: &Event| match event {
-        Event::RuntimeExceptionThrown(of) => {
-            seen.lock()
-                .expect("no panic")
-                .push(format!("{:?}", of.params.exception_details));
-        }
-        Event::RuntimeConsoleAPICalled(of) => {
-            seen.lock()
-                .expect("no panic")
-                .push(format!("{:?}", of.params));
-        }
-        Event::LogEntryAdded(of) => {
-            seen.lock()
-                .expect("no panic")
-                .push(format!("{:?}", of.params.entry));
-        }
-        _ => {}
-    };
-    tab.add_event_listener(Arc::new(listener))
-        .expect("a listener");
-    tab.enable_runtime().expect("enabled");
-    tab.enable_log().expect("enabled");
-    tab.call_method(Emulation::SetDeviceMetricsOverride {
-        width,
-        height: 900,
-        device_scale_factor: 1.0,
-        mobile: false,
-        scale: None,
-        screen_width: None,
-        screen_height: None,
-        position_x: None,
-        position_y: None,
-        dont_set_visible_size: None,
-        screen_orientation: None,
-        viewport: None,
-        display_feature: None,
-        device_posture: None,
-    })
-    .expect("a width");
-    tab.call_method(Emulation::SetEmulatedMedia {
-        media: None,
-        features: Some(vec![Emulation::MediaFeature {
-            name: "prefers-color-scheme".to_owned(),
-            value: scheme.to_owned(),
-        }]),
-    })
-    .expect("a scheme");
-    let url = format!("file://{}", FILE.display());
-    tab.navigate_to(&url)
-        .expect("opens")
-        .wait_until_navigated()
-        .expect("is there");
-    let open = Open {
-        tab,
-        errors,
-        _browser: browser,
-    };
-    open.tab.evaluate(HELPERS, false).expect("helpers");
-    open.ask("drawAll()");
-    Some(open)
+/// Both pages at a width, as far as there is a browser.
+fn both(width: u32, scheme: &str) -> impl Iterator<Item = Open> {
+    let files = [&*REPORT, &*EXPERIMENT].into_iter();
+    files.filter_map(move |file| open(file, width, scheme))
 }
 
-impl Open {
-    /// The value of an expression in the page.
-    fn ask(&self, expression: &str) -> Value {
-        let text = format!("(async () => JSON.stringify((await {expression}) ?? null))()");
-        let found = self.tab.evaluate(&text, true);
-        let found = found.unwrap_or_else(|error| panic!("{expression}: {error}"));
-        let text = found.value.unwrap_or_default();
-        let text = text
-            .as_str()
-            .unwrap_or_else(|| panic!("{expression}: no value"));
-        serde_json::from_str(text).expect("JSON")
-    }
-
-    /// Moves the mouse, or presses or releases its button, at a point of the window.
-    fn mouse(&self, kind: Input::DispatchMouseEventTypeOption, [x, y]: [f64; 2], clicks: u32) {
-        let event = Input::DispatchMouseEvent {
-            Type: kind,
-            x,
-            y,
-            modifiers: None,
-            timestamp: None,
-            button: Some(Input::MouseButton::Left),
-            buttons: None,
-            click_count: Some(clicks),
-            force: None,
-            tangential_pressure: None,
-            tilt_x: None,
-            tilt_y: None,
-            twist: None,
-            delta_x: None,
-            delta_y: None,
-            pointer_Type: None,
+/// Opens a page's file at each width, where nothing overlaps.
+fn assert_nothing_overlaps(file: &Path) {
+    for width in [390, 768, 1280] {
+        let Some(page) = open(file, width, "light") else {
+            return;
         };
-        self.tab.call_method(event).expect("a mouse");
-    }
-
-    /// The point at shares of the plotted area of a plot, scrolled into view.
-    fn point(&self, plot: usize, x: f64, y: f64) -> [f64; 2] {
-        let point = self.ask(&format!("pointOf({plot}, {x}, {y})"));
-        let point: Vec<f64> = serde_json::from_value(point).expect("two numbers");
-        [point[0], point[1]]
-    }
-
-    fn assert_no_errors(&self) {
-        let errors = self.errors.lock().expect("no panic");
-        assert!(errors.is_empty(), "{errors:#?}");
+        for unfolded in [false, true] {
+            page.ask(&format!("unfold({unfolded})"));
+            page.assert_none("faults()");
+        }
+        page.assert_none("undrawn()");
+        page.assert_none("misstatedTicks()");
+        page.assert_no_errors();
     }
 }
 
 #[test]
 fn nothing_overlaps_at_three_widths() {
-    for width in [390, 768, 1280] {
-        let Some(page) = open(width, "light") else {
-            return;
-        };
-        for unfolded in [false, true] {
-            page.ask(&format!("unfold({unfolded})"));
-            let faults = page.ask("faults()");
-            assert_eq!(
-                faults,
-                Value::from(Vec::<String>::new()),
-                "at {width} pixels"
-            );
+    assert_nothing_overlaps(&REPORT);
+    assert_nothing_overlaps(&EXPERIMENT);
+}
+
+/// Greatest size of a library motor's page in bytes, well below a megabyte.
+const MOST: u64 = 850_000;
+
+/// The real page of each library motor, a minute's simulation.
+#[test]
+#[ignore = "takes a quarter of an hour: `cargo xtask nightly` runs it"]
+fn every_motors_page_is_small_and_nothing_overlaps() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("is read");
+    for motor in motors {
+        let name = motor.source.name;
+        let plan = Plan::of(&name).expect("a motor of the library");
+        let (data, _) = plan.run(&()).expect("every variant runs");
+        let file = file(&results_page(&data), "motors");
+        let size = fs::metadata(&file).expect("it is there").len();
+        println!("{name}: {size} bytes");
+        assert!(size <= MOST, "{name}: {size} bytes of at most {MOST}");
+        assert_nothing_overlaps(&file);
+    }
+}
+
+#[test]
+fn the_dark_pages_are_legible() {
+    for page in both(1280, "dark") {
+        page.assert_none("faintTexts()");
+        assert_eq!(page.ask("isDark()"), Value::from(true));
+        page.assert_no_errors();
+    }
+}
+
+#[test]
+fn every_plot_tells_values_and_every_name_switches() {
+    for page in both(1280, "light") {
+        let plots = page.ask("plots.length").as_u64().expect("a number") as usize;
+        for plot in 0..plots {
+            let before = page.ask(&format!("told({plot})"));
+            // Elsewhere than in the plot before, which moves the pointers of others with it.
+            let share = 0.1 + 0.3 * (plot % 3) as f64;
+            page.point_at(page.point(plot, share, 0.5));
+            let after = page.ask(&format!("told({plot})"));
+            assert_ne!(before, after, "plot {plot}");
+            let has_number = |text: &str| text.contains(char::is_numeric);
+            assert!(after.as_str().is_some_and(has_number), "{after}");
         }
-        let drawn = page.ask("drawnPlots()");
+        page.assert_none("deadNames()");
+        page.assert_no_errors();
+    }
+}
+
+#[test]
+fn bars_tell_their_names_and_values() {
+    for page in both(1280, "light") {
+        let count = page.ask("barsOfPage().length").as_u64().expect("a number");
+        assert!(count > 0, "no bars");
+        for bar in 0..count {
+            page.point_at(page.place(&format!("placeOfBar({bar})")));
+            page.assert_none(&format!("untoldOfBar({bar})"));
+        }
+        page.assert_no_errors();
+    }
+}
+
+#[test]
+fn plots_of_one_axis_are_read_and_zoomed_together() {
+    let Some(page) = open(&REPORT, 1280, "light") else {
+        return;
+    };
+    // The mouse over the currents reads the torque, too, at the same angle.
+    page.point_at(page.point(0, 0.25, 0.5));
+    assert_eq!(
+        page.ask("told(0).split('phase')[0]"),
+        page.ask("told(1).split('PDCC')[0]")
+    );
+    // A drag zooms both; a double click shows all of it.
+    let scales = || (page.ask("scaleOf(0)"), page.ask("scaleOf(1)"));
+    let whole = scales();
+    page.mouse(MousePressed, page.point(0, 0.25, 0.5), 1);
+    page.mouse(MouseMoved, page.point(0, 0.5, 0.5), 0);
+    page.mouse(MouseReleased, page.point(0, 0.5, 0.5), 1);
+    page.ask("settled()");
+    let zoomed = Value::from(vec![15, 30]);
+    assert_eq!(scales(), (zoomed.clone(), zoomed));
+    for clicks in [1, 2] {
+        page.mouse(MousePressed, page.point(0, 0.5, 0.5), clicks);
+        page.mouse(MouseReleased, page.point(0, 0.5, 0.5), clicks);
+    }
+    page.ask("settled()");
+    assert_eq!(scales(), whole);
+    // So does the keyboard.
+    page.ask("plots[0].u.over.focus()");
+    for (key, is_whole) in [("+", false), ("0", true), ("+", false), ("-", true)] {
+        let before = page.ask("told(1)");
+        page.press("ArrowRight");
+        assert_ne!(page.ask("told(1)"), before, "the arrow key reads on");
+        page.press(key);
+        assert_eq!(scales() == whole, is_whole, "{key}");
+        assert_eq!(scales().0, scales().1);
+    }
+    page.assert_no_errors();
+}
+
+#[test]
+fn every_control_does_something() {
+    for (page, kinds) in both(1280, "light").zip([7, 4]) {
+        page.assert_none("untestedControls()");
+        for question in [
+            "deadSwitches()",
+            "deadHeadings()",
+            "deadLinks()",
+            "deadDetails()",
+            "deadAnchors()",
+        ] {
+            page.assert_none(question);
+        }
+        let found = page.ask("kindsOfControls().length");
         assert_eq!(
-            drawn,
-            Value::from(vec![29, 29]),
-            "plots, and those with ink"
+            found,
+            Value::from(kinds),
+            "{}",
+            page.ask("kindsOfControls()")
         );
         page.assert_no_errors();
     }
 }
 
 #[test]
-fn the_dark_page_is_legible() {
-    let Some(page) = open(1280, "dark") else {
+fn the_keyboard_reaches_every_control() {
+    for page in both(1280, "light") {
+        page.ask("unfold(true)");
+        page.assert_none("mouseOnly()");
+        page.assert_none("unfocusable()");
+        page.assert_none("deadKeys()");
+        page.assert_no_errors();
+    }
+}
+
+#[test]
+fn the_keyboard_follows_links_from_list_to_list() {
+    let Some(page) = open(&REPORT, 1280, "light") else {
         return;
     };
-    assert_eq!(page.ask("faintTexts()"), Value::from(Vec::<String>::new()));
-    assert_eq!(page.ask("isDark()"), Value::from(true));
+    let focused = || page.ask("about(document.activeElement)").to_string();
+    page.ask("document.querySelector('[data-formulas]').focus()");
+    let first = focused();
+    page.press("ArrowDown");
+    assert_ne!(focused(), first, "the next field");
+    page.press("Tab");
+    let formula = focused();
+    page.press("Enter");
+    assert!(
+        page.ask("marked()").to_string().contains("const "),
+        "{formula}"
+    );
+    page.press("Tab");
+    page.press("ArrowDown");
+    let line = focused();
+    assert!(line.contains("span line"), "{line}");
+    page.press(" ");
+    let marked = page.ask("markedPanes()");
+    assert_eq!(marked, Value::from(vec![true, true, true]), "{line}");
+    assert!(line.contains("linked-to") || focused().contains("linked-to"));
     page.assert_no_errors();
 }
 
 #[test]
-fn plots_tell_values_zoom_and_switch() {
-    use Input::DispatchMouseEventTypeOption::{MouseMoved, MousePressed, MouseReleased};
-    let Some(page) = open(1280, "light") else {
+fn a_field_leads_to_its_formulas_and_lines_and_back() {
+    let Some(page) = open(&REPORT, 1280, "light") else {
         return;
     };
-    // Every plot tells the values below the mouse.
-    let plots = page.ask("plots.length").as_u64().expect("a number") as usize;
-    for plot in 0..plots {
-        let before = page.ask(&format!("told({plot})"));
-        // Elsewhere than in the plot before, which moves the pointers of others with it.
-        let share = 0.2 + 0.1 * (plot % 6) as f64;
-        page.mouse(MouseMoved, page.point(plot, share, 0.5), 0);
-        page.ask("settled()");
-        let after = page.ask(&format!("told({plot})"));
-        assert_ne!(before, after, "plot {plot}");
-        assert!(
-            after
-                .as_str()
-                .is_some_and(|text| text.contains(char::is_numeric)),
-            "{after}"
-        );
-    }
-    // The mouse over the currents reads the torque, too, at the same angle.
-    page.mouse(MouseMoved, page.point(0, 0.25, 0.5), 0);
-    page.ask("settled()");
-    assert_eq!(
-        page.ask("told(0).split('phase')[0]"),
-        page.ask("told(1).split('PDCC')[0]")
-    );
-    // A drag zooms both; a double click shows all of it.
-    let whole = page.ask("scaleOf(0)");
-    page.mouse(MousePressed, page.point(0, 0.25, 0.5), 1);
-    page.mouse(MouseMoved, page.point(0, 0.5, 0.5), 0);
-    page.mouse(MouseReleased, page.point(0, 0.5, 0.5), 1);
-    page.ask("settled()");
-    let zoomed = page.ask("scaleOf(0)");
-    assert_eq!(zoomed, Value::from(vec![15, 30]));
-    assert_eq!(page.ask("scaleOf(1)"), zoomed);
-    for clicks in [1, 2] {
-        page.mouse(MousePressed, page.point(0, 0.5, 0.5), clicks);
-        page.mouse(MouseReleased, page.point(0, 0.5, 0.5), clicks);
-    }
-    page.ask("settled()");
-    assert_eq!(
-        (page.ask("scaleOf(0)"), page.ask("scaleOf(1)")),
-        (whole.clone(), whole)
-    );
-    // Every name in a legend switches its line.
-    assert_eq!(page.ask("deadNames()"), Value::from(Vec::<String>::new()));
-    page.assert_no_errors();
-}
-
-#[test]
-fn switches_tables_links_and_details_do_something() {
-    let Some(page) = open(1280, "light") else {
-        return;
-    };
-    for question in [
-        "deadSwitches()",
-        "deadHeadings()",
-        "deadLinks()",
-        "deadDetails()",
-        "deadAnchors()",
-    ] {
-        assert_eq!(
-            page.ask(question),
-            Value::from(Vec::<String>::new()),
-            "{question}"
-        );
-    }
-    // From a field to its formulas and lines, and back from one of the lines.
     let there = page.ask("linkedTo('[data-formulas]', 'motor.inductance')");
     let names = there.to_string();
     assert!(

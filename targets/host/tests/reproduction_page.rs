@@ -1,26 +1,17 @@
 //! The page of the paper's experiment, from short runs of the real drives.
 
 mod page_support;
+mod reproduction_support;
 
 use hexagen_host::render::{html, terminal, write};
 use hexagen_lab::READINGS;
 use hexagen_lab::closed_loop::FiguresOfMerit;
 use hexagen_lab::report::{reproduction_blocks, reproduction_page};
-use hexagen_lab::reproduction::{
-    Effort, Method, Reading, Reproduction, Verdict, distance_rms, reproduce,
-};
+use hexagen_lab::reproduction::{Method, Reading, Reproduction, Verdict, distance_rms};
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// One start, a coarse curve and a coarse search for the limit.
-static DATA: LazyLock<Reproduction> = LazyLock::new(|| {
-    let effort = Effort {
-        starts: vec![0.1],
-        curve_rpm: vec![400.0, 1500.0, 2500.0],
-        limit_rpm: (1000.0, 400.0),
-    };
-    reproduce(&effort, &()).expect("every drive runs")
-});
+static DATA: LazyLock<Reproduction> = LazyLock::new(reproduction_support::data);
 static PAGE: LazyLock<String> = LazyLock::new(render);
 
 fn render() -> String {

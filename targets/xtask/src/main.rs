@@ -28,8 +28,8 @@ enum Command {
     /// Format, contents of packages, lints, documentation and all tests
     Test,
     /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
-    /// all products of options, `commands`, `programs`, `editors`, and the proofs of all motors and
-    /// of a thousand random ones; Coq checks the shipped motors' once more
+    /// all products of options, the pages of all motors, `commands`, `programs`, `editors`, and the
+    /// proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]

@@ -214,6 +214,16 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         "interpreter",
         "full_product",
     ];
+    let pages = [
+        "test",
+        "--package",
+        "hexagen-host",
+        "--test",
+        "page_in_browser",
+        "--",
+        "--ignored",
+        "--nocapture",
+    ];
     let decisions = ["test", "--package", "hexagen-tests", "--test", "decisions"];
     let [language_server, session] = editors::steps();
     Ok(vec![
@@ -255,6 +265,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
                 &["test", "--package", "hexagen-lab", "--test", "defaults"],
             )
         },
+        step("pages of all motors", &pages),
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
         on_target("programs", &[]),

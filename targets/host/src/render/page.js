@@ -1,6 +1,44 @@
 // The page's controls: plots (drawn by uPlot), switches of variants, tables that sort.
 "use strict";
 
+// Keyboard ----------------------------------------------------------------------------------------
+
+// Whether a key presses a button.
+const presses = ({ key }) => key === "Enter" || key === " ";
+
+// Makes an element that reacts to clicks a button for the keyboard, too.
+function pressable(node) {
+  node.tabIndex = 0;
+  node.setAttribute("role", "button");
+  node.addEventListener("keydown", (event) => {
+    if (!presses(event)) return;
+    event.preventDefault();
+    node.click();
+  });
+}
+
+// Where a key leads from a place among `count` ones.
+function led(key, place, count) {
+  const to = { ArrowUp: place - 1, ArrowDown: place + 1, Home: 0, End: count - 1 }[key];
+  return to == null ? undefined : Math.max(0, Math.min(count - 1, to));
+}
+
+// One of many controls is a stop of the tab key, from which the arrow keys lead to the others.
+function oneStop(controls) {
+  controls.forEach((node, place) => {
+    node.tabIndex = place === 0 ? 0 : -1;
+    node.addEventListener("focus", () => {
+      controls.forEach((other) => (other.tabIndex = other === node ? 0 : -1));
+    });
+    node.addEventListener("keydown", (event) => {
+      const to = led(event.key, place, controls.length);
+      if (to == null) return;
+      event.preventDefault();
+      controls[to].focus();
+    });
+  });
+}
+
 // Plots -------------------------------------------------------------------------------------------
 
 // Steps of the grid on which points stand (plot.rs).
@@ -25,24 +63,48 @@ function themed(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
+const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+// The whole numbers in a text (plot.rs, `packed`).
+function unpacked(text) {
+  const numbers = [];
+  let [number, weight] = [0, 1];
+  for (const letter of text) {
+    const digit = DIGITS.indexOf(letter);
+    number += (digit % 32) * weight;
+    weight *= 32;
+    if (digit >= 32) continue;
+    numbers.push(number % 2 ? -(number - 1) / 2 : number / 2);
+    [number, weight] = [0, 1];
+  }
+  return numbers;
+}
+
 // Places on the grid as values of an axis.
 function decoded(steps, [from, to]) {
   let place = 0;
-  return steps.map((step) => from + ((place += step) / GRID) * (to - from));
+  return unpacked(steps).map((step) => from + ((place += step) / GRID) * (to - from));
 }
 
-// A value with the digits that its axis can tell apart.
-function digits(value, [from, to]) {
+// A value with the digits that its axis can tell apart; the name of the nearest tick, where ticks
+// have names.
+function digits(value, { range: [from, to], log, ticks }) {
+  if (value == null) return "\u2013";
+  if (log) return String(Number((10 ** value).toPrecision(2)));
+  if (ticks) return named(value, ticks);
   const places = Math.min(9, Math.max(0, 3 - Math.floor(Math.log10(Math.abs(to - from)))));
-  return value == null ? "\u2013" : value.toFixed(places).replace("-", "\u2212");
+  return value.toFixed(places).replace("-", "\u2212");
 }
 
 // The plot's data with values in place of steps.
 function prepared(holder) {
   const plot = JSON.parse(holder.querySelector("script").textContent);
+  let before;
   for (const of of plot.elements) {
-    if (!of.x) continue;
-    of.x = decoded(of.x, plot.x.range);
+    if (of.y == null) continue;
+    // Signals of one record share their places.
+    of.x = of.x == null ? [...before] : decoded(of.x, plot.x.range);
+    before = of.x;
     for (const name of ["y", "least", "most"]) {
       if (of[name]) of[name] = decoded(of[name], plot.y.range);
     }
@@ -54,6 +116,7 @@ function prepared(holder) {
   plot.series = plot.elements.filter((of) => of.kind === "series");
   plot.first = plot.elements.findIndex((of) => of.kind === "series");
   plot.marks = plot.elements.filter((of) => of.kind === "mark");
+  plot.bars = plot.series.filter((of) => of.shape === "bars");
   return plot;
 }
 
@@ -110,7 +173,8 @@ function axis(of, isUpright) {
   } else {
     options.values = (u, splits) => {
       const step = splits.length > 1 ? splits[1] - splits[0] : 1;
-      const places = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+      const isExact = (places) => Math.abs(step - step.toFixed(places)) < 1e-6 * step;
+      const places = [...Array(10).keys()].find(isExact) ?? 9;
       return splits.map((at) => (at == null ? "" : at.toFixed(places).replace("-", "\u2212")));
     };
   }
@@ -127,6 +191,8 @@ function scales(plot) {
     y: {
       range: (u, least, most) => {
         if (plot.series.length === 0) return least == null ? [low, high] : [least, most];
+        // Bars stand on the lower edge, and may be cut at the upper one.
+        if (plot.bars.length > 0) return [low, high];
         // Room for what was switched on.
         return [Math.min(low, least ?? low), Math.max(high, most ?? high)];
       },
@@ -139,7 +205,8 @@ function options(plot, width) {
   const [wide, high] = plot.size;
   const isPlane = plot.series.length === 0;
   const rows = stacked(plot, width - 76);
-  const above = plot.elements.some((of) => of.kind === "label") ? 20 : 10;
+  const hasLabels = plot.elements.some((of) => of.kind === "label") || plot.bars.length > 0;
+  const above = hasLabels ? 20 : 10;
   const top = Math.max(above, rows * ROW + 6);
   // The axes take 50 pixels below, and about 64 at the side.
   const height = plot.square ? width - 64 - 12 + 50 + top : Math.max(230, (width * high) / wide);
@@ -150,7 +217,7 @@ function options(plot, width) {
     scales: scales(plot),
     axes: [axis(plot.x, false), axis(plot.y, true)],
     series: [
-      { label: plot.x.title, value: (u, value) => digits(value, plot.x.range) },
+      { label: plot.x.title, value: (u, value) => digits(value, plot.x) },
       ...plot.series.map((of) => ({
         label: of.name,
         stroke: ink(of.stroke.color),
@@ -158,14 +225,17 @@ function options(plot, width) {
         dash: of.stroke.dash ?? undefined,
         show: !of.off && !off.has(of.variant),
         spanGaps: true,
-        points: { show: of.x.length === 1 },
-        value: (u, value) => digits(value, plot.y.range),
+        points: { show: of.x.length === 1 && !of.shape },
+        value: (u, value) => digits(value, plot.y),
+        fill: of.shape === "bars" ? ink(of.stroke.color) : undefined,
+        paths: of.shape ? (u) => shape(u, of) : undefined,
       })),
       ...(isPlane ? [{ label: plot.y.title, show: false }] : []),
     ],
     cursor: {
       drag: { x: true, y: isPlane, uni: 8 },
-      sync: isPlane ? undefined : { key: plot.x.title, setSeries: false, scales: ["x", null] },
+      points: { show: !plot.series.some((of) => of.shape) },
+      sync: isPlane ? undefined : { key: keyOfAxis(plot.x), setSeries: false, scales: ["x", null] },
     },
     legend: { show: !isPlane },
     hooks: {
@@ -174,10 +244,39 @@ function options(plot, width) {
         (u) => overlay(u, plot, (place) => plot.first >= 0 && place > plot.first),
         (u) => labels(u, plot),
       ],
-      setCursor: [(u) => readout(u, plot)],
-      setSeries: [(u, index, change) => toggled(plot, index, change)],
+      setCursor: [(u) => readout(u, plot), (u) => markBar(u, plot)],
+      setSeries: [(u, index, change) => toggled(u, plot, index, change)],
     },
   };
+}
+
+// The bars or level lines of a series, as uPlot draws them.
+function shape(u, of) {
+  const path = new Path2D();
+  const [from, to] = of.ends;
+  const floor = u.valToPos(u.scales.y.min, "y", true);
+  of.x.forEach((x, k) => {
+    const [left, right] = [from, to].map((end) => u.valToPos(x + end, "x", true));
+    const top = u.valToPos(of.y[k], "y", true);
+    if (of.shape === "bars") {
+      path.rect(left, top, right - left, floor - top);
+    } else {
+      path.moveTo(left, top);
+      path.lineTo(right, top);
+    }
+  });
+  return of.shape === "bars" ? { fill: path, flags: 1 } : { stroke: path, flags: 1 };
+}
+
+// Marks the name of the bar below the pointer.
+function markBar(u, plot) {
+  const [x, y] = [u.posToVal(u.cursor.left, "x"), u.posToVal(u.cursor.top, "y")];
+  plot.bars.forEach((of) => {
+    const place = plot.series.indexOf(of) + 1;
+    const isHit = (at, k) => x >= at + of.ends[0] && x <= at + of.ends[1] && y <= of.y[k];
+    const isMarked = u.cursor.left >= 0 && u.series[place].show && of.x.some(isHit);
+    u.root.querySelectorAll(".u-series")[place]?.classList.toggle("below", isMarked);
+  });
 }
 
 // The bands of shown series, and the elements that are no series.
@@ -252,7 +351,7 @@ function labels(u, plot) {
   const wrap = u.root.querySelector(".u-wrap");
   wrap.querySelectorAll(".label").forEach((old) => old.remove());
   const taken = [];
-  for (const of of plot.elements) {
+  for (const of of [...plot.elements, ...cutBars(u, plot)]) {
     if (of.kind !== "label" && of.kind !== "mark") continue;
     const { text, place } = of.kind === "mark" ? ofMark(u, of) : ofLabel(u, of);
     if (!place) continue;
@@ -274,6 +373,18 @@ function labels(u, plot) {
     node.style.left = `${left}px`;
     node.style.top = `${top}px`;
   }
+}
+
+// The values of bars that are cut at the upper edge, as texts above it.
+function cutBars(u, plot) {
+  const shown = plot.bars.filter((of) => u.series[plot.series.indexOf(of) + 1].show);
+  return shown.flatMap((of) =>
+    of.x.flatMap((x, k) => {
+      if (of.y[k] <= plot.y.range[1]) return [];
+      const at = [x + (of.ends[0] + of.ends[1]) / 2, plot.y.range[1]];
+      return [{ kind: "label", at, text: of.y[k].toFixed(0), offset: [0, -3], anchor: [0.5, 1] }];
+    }),
+  );
 }
 
 const isWithin = (value, scale) => value >= scale.min && value <= scale.max;
@@ -301,25 +412,78 @@ function ofLabel(u, of) {
 function readout(u, plot) {
   const line = u.root.querySelector(".readout");
   if (!line) return;
-  const { left, top } = u.cursor;
-  const value = (at, of, scale) => (at >= 0 ? digits(u.posToVal(at, scale), of.range) : "\u2013");
-  line.textContent =
-    `${plot.x.title}: ${plot.x.ticks ? named(u.posToVal(left, "x"), plot.x) : value(left, plot.x, "x")}, ` +
-    `${plot.y.title}: ${value(top, plot.y, "y")}`;
+  const value = (at, of, scale) => (at >= 0 ? digits(u.posToVal(at, scale), of) : "\u2013");
+  const [x, y] = [value(u.cursor.left, plot.x, "x"), value(u.cursor.top, plot.y, "y")];
+  line.textContent = `${plot.x.title}: ${x}, ${plot.y.title}: ${y}`;
 }
 
-// The nearest named tick.
-function named(value, { ticks }) {
-  if (!Number.isFinite(value)) return "\u2013";
+// The name of the nearest tick.
+function named(value, ticks) {
   const apart = ([at]) => Math.abs(at - value);
   return ticks.reduce((best, tick) => (apart(tick) < apart(best) ? tick : best))[1];
 }
 
+// The names of a legend as buttons.
+function watchNames(u, plot) {
+  if (plot.series.length === 0) return;
+  u.root.querySelectorAll(".u-series th").forEach((name, place) => {
+    if (place === 0) return;
+    pressable(name);
+    name.setAttribute("aria-pressed", u.series[place].show);
+  });
+}
+
+// Plots that are read and zoomed together: signals over the same axis.
+const keyOfAxis = ({ title, ticks }) => title + JSON.stringify(ticks);
+
+function together(entry) {
+  const isMate = ({ u, plot }) =>
+    u && plot.series.length > 0 && keyOfAxis(plot.x) === keyOfAxis(entry.plot.x);
+  return entry.plot.series.length > 0 ? plots.filter(isMate) : [entry];
+}
+
+// Shows a share of what a plot and its mates show now, around the pointer; all of it without one.
+function zoom(entry, share) {
+  const { plot, u } = entry;
+  for (const name of plot.series.length > 0 ? ["x"] : ["x", "y"]) {
+    const { min, max } = u.scales[name];
+    const at = u.posToVal(name === "x" ? u.cursor.left : u.cursor.top, name);
+    const [from, to] = plot[name].range;
+    const least = share ? Math.max(from, at + (min - at) * share) : from;
+    const most = share ? Math.min(to, at + (max - at) * share) : to;
+    together(entry).forEach((mate) => mate.u.setScale(name, { min: least, max: most }));
+  }
+}
+
+// Arrow keys move the pointer of a plot, + and - zoom around it, 0 shows all.
+function watchKeys(entry) {
+  const { u } = entry;
+  u.over.tabIndex = 0;
+  u.over.setAttribute("role", "application");
+  u.over.setAttribute("aria-label", "Plot: arrow keys read values, + and - zoom, 0 shows all");
+  u.over.addEventListener("keydown", (event) => {
+    const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const shares = { "+": 0.5, "-": 2, 0: null };
+    const { clientWidth: wide, clientHeight: high } = u.over;
+    // Begins in the middle.
+    const place = u.cursor.left >= 0 ? [u.cursor.left, u.cursor.top] : [wide / 2, high / 2];
+    const [right, down] = moves[event.key] ?? [0, 0];
+    if (!(event.key in moves) && !(event.key in shares)) return;
+    event.preventDefault();
+    const within = (value, most) => Math.max(0, Math.min(most - 1, value));
+    const left = within(place[0] + (right * wide) / 60, wide);
+    // Heard by the plots that are read together.
+    u.setCursor({ left, top: within(place[1] + (down * high) / 30, high) }, true, true);
+    if (event.key in shares) zoom(entry, shares[event.key]);
+  });
+}
+
 // A click on a variant's name in a legend holds for the page.
-function toggled(plot, index, change) {
+function toggled(u, plot, index, change) {
   const of = plot.series[index - 1];
   if (!of || change.show == null) return;
   of.off = !change.show;
+  u.root.querySelectorAll(".u-series th")[index]?.setAttribute("aria-pressed", change.show);
   if (of.variant != null) switchVariant(of.variant, change.show);
 }
 
@@ -331,6 +495,8 @@ function draw(entry) {
   entry.u?.destroy();
   const { plot } = entry;
   entry.u = new uPlot(options(plot, width), table(plot), entry.holder);
+  watchNames(entry.u, plot);
+  watchKeys(entry);
   if (plot.series.length === 0) {
     const line = document.createElement("p");
     line.className = "readout";
@@ -499,8 +665,12 @@ function watchLinks() {
     const linesOf = (chosen) => chosen.flatMap((of) => ofFormula[formulas.indexOf(of)]);
     const fieldsOf = (chosen) =>
       fields.filter((_, k) => ofField[k].some((of) => chosen.includes(of)));
+    // The others belong to no formula.
+    const linked = lines.filter((line) => ofFormula.some((of) => of.includes(line)));
+    linked.forEach(pressable);
+    [fields, formulas, linked].forEach(oneStop);
     box.addEventListener("click", ({ target }) => {
-      const clicked = target.closest("button, .line");
+      const clicked = target.closest("button, .line[role]");
       if (!clicked) return;
       const place = fields.indexOf(clicked);
       let chosen = place >= 0 ? ofField[place] : [clicked];

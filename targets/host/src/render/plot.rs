@@ -1,11 +1,11 @@
 //! Plots as JSON for the page's script, which draws them.
 //!
-//! Points stand on a grid over the plotted area, each as its distance from the one before: short
-//! numbers, and steps that a zoom to a quarter does not show yet.
+//! Points stand on a grid over the plotted area, whose steps a zoom to a quarter does not show yet.
+//! Each is written as its distance from the one before, in a letter or two ([`packed`]).
 
 use super::RenderError;
 use super::html::css;
-use hexagen_lab::report::plot::{Axis, Element, Label, Plot, Point, Series, Side, Stroke};
+use hexagen_lab::report::plot::{Axis, Element, Label, Plot, Point, Series, Shape, Side, Stroke};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
@@ -28,7 +28,7 @@ pub fn plot(plot: &Plot) -> Result<Markup, RenderError> {
         "square": plot.is_square,
         "x": axis(&plot.x),
         "y": axis(&plot.y),
-        "elements": elements.collect::<Vec<_>>(),
+        "elements": without_repeated_places(elements.collect()),
     });
     // No text ends the script element.
     let data = serde_json::to_string(&data)?.replace('<', "\\u003c");
@@ -46,7 +46,19 @@ fn axis(axis: &Axis) -> Value {
         number.is_ok_and(|number| (number - at).abs() <= 1e-6 * at.abs().max(1e-3))
     };
     let ticks = (!axis.ticks.iter().all(is_number)).then_some(&axis.ticks);
-    json!({ "title": axis.title, "range": axis.range, "ticks": ticks })
+    json!({ "title": axis.title, "range": axis.range, "ticks": ticks, "log": axis.is_logarithmic })
+}
+
+/// The elements, their horizontal places left out where they are those of the element before: the
+/// signals of a record share their columns.
+fn without_repeated_places(mut elements: Vec<Value>) -> Vec<Value> {
+    let places: Vec<Value> = elements.iter().map(|of| of["x"].clone()).collect();
+    for (place, of) in elements.iter_mut().enumerate().skip(1) {
+        if places[place].is_string() && places[place] == places[place - 1] {
+            of["x"] = Value::Null;
+        }
+    }
+    elements
 }
 
 fn element(plot: &Plot, element: &Element) -> Value {
@@ -87,6 +99,11 @@ fn series(plot: &Plot, of: &Series) -> Value {
     };
     let [least, most] =
         [side(|band| band.0), side(|band| band.1)].map(|side| steps(&on_grid(plot, &side)).1);
+    let (shape, ends) = match of.shape {
+        Shape::Line => (None, None),
+        Shape::Bars(from, to) => (Some("bars"), Some([from, to])),
+        Shape::Levels(from, to) => (Some("levels"), Some([from, to])),
+    };
     json!({
         "kind": "series",
         "name": of.name,
@@ -96,6 +113,8 @@ fn series(plot: &Plot, of: &Series) -> Value {
         "least": least,
         "most": most,
         "stroke": line(&of.stroke),
+        "shape": shape,
+        "ends": ends,
         "off": of.is_off,
     })
 }
@@ -165,15 +184,35 @@ fn distance(point: (i64, i64), from: (i64, i64), to: (i64, i64)) -> f64 {
 }
 
 /// Coordinates as the first one and the distances of all others from the one before.
-fn steps(points: &[(i64, i64)]) -> (Vec<i64>, Vec<i64>) {
+fn steps(points: &[(i64, i64)]) -> (String, String) {
     let before = [(0, 0)].into_iter().chain(points.iter().copied());
     let pairs = points.iter().zip(before);
-    pairs.map(|((x, y), (x0, y0))| (x - x0, y - y0)).unzip()
+    let steps = pairs.map(|((x, y), (x0, y0))| (x - x0, y - y0));
+    let (x, y): (Vec<_>, Vec<_>) = steps.unzip();
+    (packed(&x), packed(&y))
+}
+
+/// The digits of base 64.
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+/// Whole numbers as source maps write them (base 64 VLQ): five bits per digit, the lowest first and
+/// the sign before them; 32 is added where digits follow.
+fn packed(numbers: &[i64]) -> String {
+    let mut text = String::new();
+    for number in numbers {
+        let mut rest = number.unsigned_abs() << 1 | u64::from(*number < 0);
+        while rest >= 32 {
+            text.push(char::from(DIGITS[(rest % 32 + 32) as usize]));
+            rest /= 32;
+        }
+        text.push(char::from(DIGITS[rest as usize]));
+    }
+    text
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{kept, steps};
+    use super::{kept, packed, steps};
 
     #[test]
     fn lines_keep_their_corners_and_lose_what_lies_between() {
@@ -184,6 +223,14 @@ mod tests {
 
     #[test]
     fn steps_add_up_to_their_points() {
-        assert_eq!(steps(&[(3, 5), (4, 1)]), (vec![3, 1], vec![5, -4]));
+        let (x, y) = steps(&[(3, 5), (4, 1)]);
+        assert_eq!((x, y), (packed(&[3, 1]), packed(&[5, -4])));
+    }
+
+    /// The numbers of the source maps' own examples.
+    #[test]
+    fn numbers_are_packed_as_in_source_maps() {
+        assert_eq!(packed(&[0, 0, 16, 1]), "AAgBC");
+        assert_eq!(packed(&[-1, 15, -16, 4096]), "DehBggI");
     }
 }

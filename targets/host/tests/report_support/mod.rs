@@ -369,7 +369,8 @@ pub fn data() -> Results {
         variant("PDCC three_phase, nearest", NEAREST, fine, true),
         variant("PDCC three_phase, keep_angle", PAIR, keep_angle, false),
         variant(
-            "PDCC three_phase, proportional",
+            // As long as the longest name of the table, which breaks on a narrow screen.
+            "PDCC three_phase, torque_priority, advance 2, estimated EMF",
             PROPORTIONAL,
             proportional,
             false,

@@ -1,7 +1,7 @@
 //! Colours of figures.
 //!
-//! Variants use the palette of Okabe and Ito, then three colours of Paul Tol's muted one; phases
-//! Tol's high-contrast one. All are safe for colour-blind readers. Variants and phases share no
+//! Variants use the palette of Okabe and Ito, then three colours of Paul Tol's muted one and one of
+//! his vibrant one; phases Tol's high-contrast one. All are safe for colour-blind readers. Variants and phases share no
 //! colour, so that a colour is unambiguous.
 
 use serde::Serialize;
@@ -27,7 +27,7 @@ pub const PHASES: [Color; 3] = [
     Color(0xBB, 0x55, 0x66),
 ];
 /// Variants, in the order of their table.
-pub const VARIANTS: [Color; 11] = [
+pub const VARIANTS: [Color; 12] = [
     Color(0x00, 0x72, 0xB2),
     Color(0xD5, 0x5E, 0x00),
     Color(0x00, 0x9E, 0x73),
@@ -39,6 +39,7 @@ pub const VARIANTS: [Color; 11] = [
     Color(0x33, 0x22, 0x88),
     Color(0x99, 0x99, 0x33),
     Color(0x88, 0x22, 0x55),
+    Color(0xEE, 0x33, 0x77),
 ];
 
 /// Colour of the variant with this index in the table; repeats beyond the palette.

@@ -1,8 +1,10 @@
 //! What of the emitted code follows from each field of the specification.
 //!
 //! Nobody states it: each field is changed a little, the code is emitted again, and what differs
-//! follows from the field. So it holds for this motor and cannot go stale.
+//! follows from the field. So it holds for this motor and cannot go stale. Fields that the file
+//! leaves to their defaults are changed likewise ([`super::unstated`]).
 
+use super::unstated::{self, unstated};
 use crate::engine::SelectedMotor;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use hexagen_codegen::pipeline::generate;
@@ -88,24 +90,22 @@ fn length(lines: &[&str]) -> usize {
     lines.len()
 }
 
-/// All fields of a motor file with what follows from each in its controller's code, and the options
-/// of its controller that have a default.
+/// All fields of a motor file with what follows from each in its controller's code, and those that
+/// it leaves to their defaults, section by section.
 pub fn links(motor: &SelectedMotor, rust: &str) -> Vec<FieldLinks> {
     let ast = &motor.ast;
     let mut fields = Vec::new();
     for (section, of) in sections(ast) {
         for field in of.fields.iter().filter(|field| field.name != "description") {
             let changed = changes(section, &field.name, &field.value, ast);
-            fields.push((
-                section,
-                field.name.clone(),
-                text(&field.value),
-                false,
-                changed,
-            ));
+            let value = text(&field.value);
+            fields.push((section, field.name.clone(), value, false, changed));
+        }
+        match section {
+            "controller" => fields.extend(defaults(ast)),
+            _ => fields.extend(unstated_of(section, ast)),
         }
     }
-    fields.extend(defaults(ast));
     let linked = fields.into_iter();
     let linked = linked.map(|(section, name, value, is_default, changed)| FieldLinks {
         section,
@@ -118,6 +118,34 @@ pub fn links(motor: &SelectedMotor, rust: &str) -> Vec<FieldLinks> {
             .unwrap_or_default(),
     });
     linked.collect()
+}
+
+/// The fields of motor or inverter that the file leaves to their defaults.
+fn unstated_of(section: &'static str, ast: &SpecAst) -> Vec<Changed> {
+    let Ok((spec, _)) = check(ast) else {
+        return Vec::new();
+    };
+    let all = unstated(&spec).into_iter();
+    let of_section = all.filter(|field| field.section == section && !field.is_stated_in(ast));
+    let changed = of_section.map(|field| {
+        let others = if let Some(other) = &field.other {
+            vec![unstated::stating(ast, section, other)]
+        } else {
+            let stated = field.stated(ast);
+            let value = &stated_value(&stated, section, field.name);
+            changes(section, field.name, value, &stated)
+        };
+        (section, field.name.to_owned(), field.value, true, others)
+    });
+    changed.collect()
+}
+
+/// The value of a field that is there.
+fn stated_value(ast: &SpecAst, section: &str, name: &str) -> Value {
+    let mut all = sections(ast).into_iter();
+    let of = all.find(|(of, _)| *of == section).map(|(_, of)| of);
+    let field = of.and_then(|of| of.field(name));
+    field.map_or(Value::Integers(Vec::new()), |field| field.value.clone())
 }
 
 /// A field: section, name, value, whether that is the default, and specifications that differ in
@@ -182,6 +210,12 @@ fn changes(section: &str, name: &str, value: &Value, ast: &SpecAst) -> Vec<SpecA
             words
                 .filter(|word| word_of(word) != word_of(value))
                 .collect()
+        }
+        // Hall codes of the next sector each.
+        Value::Integers(all) if !all.is_empty() => {
+            let mut turned = all.clone();
+            turned.rotate_left(1);
+            vec![Value::Integers(turned)]
         }
         _ => Vec::new(),
     };
@@ -260,4 +294,58 @@ fn bodies(rust: &str) -> Vec<(String, String)> {
         .iter()
         .map(|item| (item.name.clone(), body(item)))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{differing, items, links, unstated};
+    use crate::engine::{PlantOptions, SelectedMotor};
+    use hexagen_codegen::spec::check;
+
+    const MOTORS: [&str; 3] = ["trivedi-keshri-660w", "linix-45zwn24-40", "hoverboard-hub"];
+
+    fn motor(name: &str) -> (SelectedMotor, String) {
+        let motor = SelectedMotor::find(name, &PlantOptions::default()).expect("is in the library");
+        let own = motor.prepare_for_torque(None).expect("generates");
+        let rust = own.rust();
+        (motor, rust)
+    }
+
+    #[test]
+    fn a_default_that_is_stated_leaves_the_code_as_it_is() {
+        for name in MOTORS {
+            let (motor, rust) = motor(name);
+            let (spec, _) = check(&motor.ast).expect("is sound");
+            for field in unstated(&spec) {
+                if field.is_stated_in(&motor.ast) {
+                    continue;
+                }
+                let stated = differing(&field.stated(&motor.ast), &rust);
+                let (field, value) = (field.name, field.value);
+                assert_eq!(stated, Some(vec![]), "{name}: {field} = {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn defaults_of_motor_and_inverter_lead_to_their_formulas() {
+        let (motor, rust) = motor("linix-45zwn24-40");
+        let links = links(&motor, &rust);
+        let items = items(&rust);
+        for (name, formula) in [
+            ("trip_current", "TRIP"),
+            ("max_current", "MAX"),
+            ("hall_codes", "SECTOR"),
+            ("adc_offset", "OFFSET"),
+            ("maximum_speed", "REV_MIN"),
+        ] {
+            let of = links.iter().find(|of| of.name == name).expect("is a field");
+            assert!(of.is_default, "{name}");
+            let names: Vec<&str> = of.items.iter().map(|k| items[*k].name.as_str()).collect();
+            assert!(
+                names.iter().any(|name| name.contains(formula)),
+                "{name}: {names:?}"
+            );
+        }
+    }
 }

@@ -5,6 +5,7 @@ mod data;
 mod expected;
 mod links;
 mod planned;
+mod unstated;
 
 pub use collect::Plan;
 pub use data::{

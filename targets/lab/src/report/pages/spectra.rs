@@ -1,10 +1,10 @@
 //! Harmonics of the phase current, with the ideal wave, and of the torque.
 
-use super::plotted;
+use super::{plotted, switches};
 use crate::closed_loop::{
     Trace, harmonic_of_quasi_square, harmonics_of_current, harmonics_of_torque,
 };
-use crate::report::plot::{Bars, bars};
+use crate::report::plot::{Bar, Bars, bars};
 use crate::report::{Block, Figure, INK, Sign, variant};
 use crate::results::Results;
 use crate::text::number;
@@ -56,12 +56,10 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     if plotted(data).next().is_none() {
         return Block::nothing("records");
     }
-    let variants = plotted(data);
-    let fields = variants.map(|(k, of)| Sign::Field(variant(k), 1.0).means(of.label.clone()));
     let ideal =
         "ideal quasi-square wave: 100 % divided by the order (an ideal torque has no harmonic)";
     let mut blocks = vec![
-        Block::Legend(fields.collect()),
+        switches(data, |color| Sign::Field(color, 1.0)),
         Block::Legend(vec![Sign::line(INK, 2.0).means(ideal)]),
     ];
     blocks.extend(KINDS.iter().map(|kind| plots(data, kind)));
@@ -70,27 +68,35 @@ pub fn blocks(data: &Results) -> Vec<Block> {
 
 /// A plot per speed, all with the same axis.
 fn plots(data: &Results, kind: &Kind) -> Block {
-    let at = |rpm: f64| {
+    let at = |rpm: f64| -> Vec<(usize, &str, Spectrum)> {
         let records = plotted(data).filter_map(move |(index, variant)| {
             let record = variant.records.iter().find(|record| record.rpm == rpm)?;
-            Some((super::variant(index), (kind.of)(&record.trace, HIGHEST)))
+            let spectrum = (kind.of)(&record.trace, HIGHEST);
+            Some((index, variant.label.as_str(), spectrum))
         });
-        records.unzip()
+        records.collect()
     };
-    let speeds: Vec<(f64, (Vec<_>, Vec<Spectrum>))> =
-        data.speeds_rpm.iter().map(|&rpm| (rpm, at(rpm))).collect();
-    let all = speeds.iter().flat_map(|(_, (_, spectra))| spectra);
+    let speeds = data.speeds_rpm.iter().map(|&rpm| (rpm, at(rpm)));
+    let speeds: Vec<_> = speeds.filter(|(_, all)| !all.is_empty()).collect();
+    let all = speeds.iter().flat_map(|(_, all)| all);
+    let all = all.map(|(_, _, spectrum)| spectrum);
     let top = top(all, kind.orders, (kind.least, 100.0));
-    let running = speeds.into_iter().filter(|(_, (_, all))| !all.is_empty());
-    let figures = running.map(|(rpm, (colors, spectra))| {
-        let rpm = number(rpm, 0);
+    let figures = speeds.iter().map(|(rpm, spectra)| {
+        let rpm = number(*rpm, 0);
+        let bar = |(index, label, spectrum): &(usize, &str, Spectrum)| Bar {
+            name: (*label).to_owned(),
+            variant: Some(*index),
+            color: variant(*index),
+            values: values(spectrum, kind.orders),
+        };
         let plot = bars(Bars {
             description: format!("Harmonics of the {} at {rpm} rpm", kind.name.to_lowercase()),
             x_title: "order of the harmonic",
             y_title: kind.y_title,
             top,
-            colors,
-            groups: groups(&spectra, kind.orders, kind.ideal),
+            groups: kind.orders.iter().map(usize::to_string).collect(),
+            bars: spectra.iter().map(bar).collect(),
+            ideal: kind.orders.iter().copied().filter_map(kind.ideal).collect(),
         });
         Figure::new(None, format!("{}, **{rpm} rpm**", kind.name), plot)
     });
@@ -100,17 +106,9 @@ fn plots(data: &Results, kind: &Kind) -> Block {
     }
 }
 
-/// A group of bars per order.
-pub fn groups(
-    spectra: &[Spectrum],
-    orders: &[usize],
-    ideal: fn(usize) -> Option<f64>,
-) -> Vec<(String, Vec<Option<f64>>, Option<f64>)> {
-    let group = |&order: &usize| {
-        let values = spectra.iter().map(|spectrum| spectrum[order]);
-        (order.to_string(), values.collect(), ideal(order))
-    };
-    orders.iter().map(group).collect()
+/// The values of a spectrum at some orders.
+pub fn values(spectrum: &Spectrum, orders: &[usize]) -> Vec<Option<f64>> {
+    orders.iter().map(|&order| spectrum[order]).collect()
 }
 
 /// The vertical axis' end: the greatest harmonic, within both limits, with a margin.

@@ -14,7 +14,8 @@ pub fn linked(data: &Results) -> Vec<Block> {
         return Block::nothing("emitted code");
     };
     let note = "A click on a field, a formula or a line of code marks what belongs to it in the other two. A formula belongs to a field if \
-                its code differs once the field does: by 1 % for a number, by 1 for a count, by another choice for a word of the controller. Pale fields have none.";
+                its code differs once the field does: by 1 % for a number, by 1 for a count, by another choice for a word. Pale fields have none. With the keyboard: \
+                the tab key leads from list to list, arrow keys within one, and Enter marks.";
     let items = items(&texts.rust);
     let fields = data.links.iter().map(|field| {
         let default = if field.is_default { " (default)" } else { "" };

@@ -1,7 +1,7 @@
 //! Bar charts: groups of harmonics, and histograms of errors.
 
-use super::super::palette::{AXIS, Color, DEMAND, INK, PHASES};
-use super::{Axis, Plot, Stroke, multiples, tick_text};
+use super::super::palette::{Color, DEMAND, INK, PHASES};
+use super::{Axis, Plot, Series, Shape, Stroke, multiples, tick_text};
 
 /// Share of a group's width that its bars fill.
 const FILLED: f64 = 0.8;
@@ -17,49 +17,60 @@ pub struct Bars<'a> {
     pub y_title: &'a str,
     /// Greatest value of the vertical axis; positive.
     pub top: f64,
-    /// Colour of each bar in a group.
-    pub colors: Vec<Color>,
-    /// The groups: text below, a value per bar, and the ideal value, marked across.
-    pub groups: Vec<(String, Vec<Option<f64>>, Option<f64>)>,
+    /// What stands below each group.
+    pub groups: Vec<String>,
+    /// The bars that each group has, from left to right.
+    pub bars: Vec<Bar>,
+    /// The ideal value of each group, marked across it; empty for none.
+    pub ideal: Vec<f64>,
 }
 
-/// Groups of bars side by side. A bar taller than the plot ends at its edge with its value above.
+/// One bar in each group.
+#[derive(Debug)]
+pub struct Bar {
+    /// Its name.
+    pub name: String,
+    /// Index of the variant that it belongs to, if it belongs to one.
+    pub variant: Option<usize>,
+    /// Its colour.
+    pub color: Color,
+    /// Its value in each group; none where it is not defined.
+    pub values: Vec<Option<f64>>,
+}
+
+/// Groups of bars side by side. Bars are signals with a value in the middle of each group.
 pub fn bars(bars: Bars<'_>) -> Plot {
-    let top = bars.top;
-    let names = bars.groups.iter().enumerate();
-    let x = Axis {
-        title: bars.x_title.to_owned(),
-        range: (0.0, bars.groups.len() as f64),
-        ticks: names
-            .map(|(k, (name, ..))| (k as f64 + 0.5, name.clone()))
-            .collect(),
-    };
-    let y = Axis::new(bars.y_title, &(0.0..top), 6);
+    let groups = bars.groups.into_iter().enumerate();
+    let ticks: Vec<_> = groups.map(|(k, name)| (middle(k), name)).collect();
+    let end = ticks.len() as f64;
+    let x = Axis::ticked(bars.x_title, (0.0, end), ticks);
+    let y = Axis::new(bars.y_title, &(0.0..bars.top), 6);
     let mut plot = Plot::new(bars.description, (550.0, 270.0), x, y);
-    let width = FILLED / bars.colors.len().max(1) as f64;
-    for (k, (_, values, ideal)) in bars.groups.into_iter().enumerate() {
-        let start = k as f64 + (1.0 - FILLED) / 2.0;
-        for (bar, (value, color)) in values.into_iter().zip(&bars.colors).enumerate() {
-            let Some(value) = value else {
-                continue;
-            };
-            let left = start + bar as f64 * width;
-            plot.block(
-                (left, 0.0),
-                (left + 0.88 * width, value.min(top)),
-                (*color, 1.0),
-            );
-            if value > top {
-                let at = (left + 0.44 * width, top);
-                plot.write_above(tick_text(value, 0), at, (AXIS, 0.8));
-            }
-        }
-        if let Some(ideal) = ideal {
-            let (from, to) = (k as f64 + 0.04, k as f64 + 0.96);
-            plot.line([(from, ideal), (to, ideal)], Stroke::solid(INK, 1.6));
-        }
+    let width = FILLED / bars.bars.len().max(1) as f64;
+    for (place, bar) in bars.bars.into_iter().enumerate() {
+        let left = place as f64 * width - FILLED / 2.0;
+        let values = bar.values.iter().enumerate();
+        let points = values.filter_map(|(k, value)| Some((middle(k), (*value)?)));
+        plot.series(Series {
+            variant: bar.variant,
+            shape: Shape::Bars(left, left + 0.88 * width),
+            ..Series::new(bar.name, points.collect(), Stroke::solid(bar.color, 0.0))
+        });
+    }
+    if !bars.ideal.is_empty() {
+        let values = bars.ideal.into_iter().enumerate();
+        let points = values.map(|(k, value)| (middle(k), value)).collect();
+        plot.series(Series {
+            shape: Shape::Levels(-0.46, 0.46),
+            ..Series::new("ideal", points, Stroke::solid(INK, 1.6))
+        });
     }
     plot
+}
+
+/// Middle of a group by its place.
+fn middle(place: usize) -> f64 {
+    place as f64 + 0.5
 }
 
 /// Margin of a histogram beyond the bound on either side, relative to the bound.
@@ -81,18 +92,23 @@ pub fn histogram(description: String, bound: f64, counts: &[u64]) -> Plot {
     let beyond = (1.0 + BEYOND) * ends;
     let x = Axis::new(format!("error in {prefix}V"), &(-beyond..beyond), 7);
     let powers = multiples(&(floor..2.0), 1.0).into_iter();
+    let ticks = powers.map(|power| (power, power_text(power))).collect();
     let y = Axis {
-        title: "share of errors in %".to_owned(),
-        range: (floor, 2.0),
-        ticks: powers.map(|power| (power, power_text(power))).collect(),
+        is_logarithmic: true,
+        ..Axis::ticked("share of errors in %", (floor, 2.0), ticks)
     };
     let mut plot = Plot::new(description, (360.0, 210.0), x, y);
     let width = 2.0 * ends / counts.len().max(1) as f64;
-    for (place, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-        let left = place as f64 * width - ends;
-        let height = percent(count).log10();
-        plot.block((left, floor), (left + width, height), (PHASES[0], 1.0));
-    }
+    let seen = counts.iter().enumerate().filter(|(_, count)| **count > 0);
+    let points = seen.map(|(place, &count)| (middle(place) * width - ends, percent(count).log10()));
+    plot.series(Series {
+        shape: Shape::Bars(-width / 2.0, width / 2.0),
+        ..Series::new(
+            "share in %",
+            points.collect(),
+            Stroke::solid(PHASES[0], 0.0),
+        )
+    });
     for (edge, name) in [(-ends, "\u{2212}bound"), (ends, "bound")] {
         plot.line([(edge, floor), (edge, 2.0)], Stroke::solid(PHASES[2], 1.6));
         plot.write_above(name, (edge, 2.0), (DEMAND, 0.85));

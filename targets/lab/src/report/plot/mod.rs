@@ -8,7 +8,7 @@ mod torque_speed;
 mod turn;
 mod window;
 
-pub use bars::{Bars, bars, histogram};
+pub use bars::{Bar, Bars, bars, histogram};
 pub use plane::{Named, Plane, corners, plane, ray, trajectory};
 pub use stability::{SEARCH, stability};
 pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
@@ -100,6 +100,8 @@ pub struct Axis {
     pub range: (f64, f64),
     /// Places of ticks and grid lines, with their labels.
     pub ticks: Vec<(f64, String)>,
+    /// Whether the places are logarithms to base 10 of what they stand for.
+    pub is_logarithmic: bool,
 }
 
 impl Axis {
@@ -116,6 +118,17 @@ impl Axis {
             title: title.into(),
             range: (range.start, range.end),
             ticks: ticks.map(|at| (at, tick_text(at, digits))).collect(),
+            is_logarithmic: false,
+        }
+    }
+
+    /// An axis whose ticks are stated.
+    pub fn ticked(title: impl Into<String>, range: (f64, f64), ticks: Vec<(f64, String)>) -> Self {
+        Self {
+            title: title.into(),
+            range,
+            ticks,
+            is_logarithmic: false,
         }
     }
 }
@@ -185,8 +198,24 @@ pub struct Series {
     pub band: Vec<Point>,
     /// How it is drawn.
     pub stroke: Stroke,
+    /// What is drawn at its points.
+    pub shape: Shape,
     /// Whether it is switched off at first.
     pub is_off: bool,
+}
+
+/// What is drawn at the points of a signal. Ends are relative to the point, along the horizontal
+/// axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// A line through all of them.
+    Line,
+    /// A bar from the lower edge of the plot up to each. One taller than the plot ends at its edge,
+    /// with its value above.
+    Bars(f64, f64),
+    /// A level line at each.
+    Levels(f64, f64),
 }
 
 impl Series {
@@ -198,6 +227,7 @@ impl Series {
             points,
             band: Vec::new(),
             stroke,
+            shape: Shape::Line,
             is_off: false,
         }
     }

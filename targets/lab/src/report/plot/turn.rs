@@ -83,13 +83,8 @@ pub fn levels(description: String, signals: &[Level]) -> Plot {
     let count = signals.len() as f64;
     let base = |index: usize| count - 1.0 - index as f64;
     let names = signals.iter().enumerate();
-    let y = Axis {
-        title: "0 below, 1 above".to_owned(),
-        range: (-0.2, count),
-        ticks: names
-            .map(|(k, signal)| (base(k) + STEP / 2.0, signal.name.to_owned()))
-            .collect(),
-    };
+    let ticks = names.map(|(k, signal)| (base(k) + STEP / 2.0, signal.name.to_owned()));
+    let y = Axis::ticked("0 below, 1 above", (-0.2, count), ticks.collect());
     let mut plot = over_a_turn(description, 190.0, y);
     for (index, signal) in signals.iter().enumerate() {
         let points = (0..6).zip(signal.values).flat_map(|(sector, is_high)| {

@@ -5,8 +5,8 @@ use crate::closed_loop::{harmonic_of_quasi_square, hexagon};
 use crate::report::pages::phase_keys;
 use crate::report::pages::spectra::CURRENT_ORDERS;
 use crate::report::plot::{
-    Bars, Columns, FIRST_DEG, Level, Named, Plane, Point, Stroke, Wave, bars, corners, ideal_phase,
-    levels, plane, ray, wave,
+    Bar, Bars, Columns, FIRST_DEG, Level, Named, Plane, Point, Stroke, Wave, bars, corners,
+    ideal_phase, levels, plane, ray, wave,
 };
 use crate::report::{Block, Figure, IDEAL, PHASES, Sign, variant};
 use crate::reproduction::Reproduction;
@@ -193,21 +193,21 @@ pub fn figures_12_13(data: &Reproduction) -> Vec<Block> {
         ideal: Vec::new(),
         demand: None,
     });
-    let harmonic = |order: usize| {
-        let value = harmonic_of_quasi_square(order);
-        (order.to_string(), vec![Some(value)], None)
-    };
+    let orders: Vec<usize> = [1].into_iter().chain(CURRENT_ORDERS).collect();
+    let values = orders.iter().map(|&order| harmonic_of_quasi_square(order));
     let spectrum = bars(Bars {
         description: "Spectrum of the ideal quasi-square current".to_owned(),
         x_title: "order of the harmonic",
         y_title: "% of the fundamental",
         top: 105.0,
-        colors: vec![PHASES[0]],
-        groups: [1]
-            .into_iter()
-            .chain(CURRENT_ORDERS)
-            .map(harmonic)
-            .collect(),
+        groups: orders.iter().map(usize::to_string).collect(),
+        bars: vec![Bar {
+            name: "harmonic".to_owned(),
+            variant: None,
+            color: PHASES[0],
+            values: values.map(Some).collect(),
+        }],
+        ideal: Vec::new(),
     });
     let fundamental = 2.0 * 3.0_f64.sqrt() / PI * data.current;
     let [fifth, seventh] = [5, 7].map(|order| number(harmonic_of_quasi_square(order), 1));

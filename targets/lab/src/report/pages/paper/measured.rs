@@ -4,13 +4,13 @@ use super::verdicts::lettered;
 use crate::closed_loop::{
     Held, LimitOutcome, harmonic_of_quasi_square, harmonics_of_current, hexagon,
 };
-use crate::report::pages::spectra::{CURRENT_ORDERS, HIGHEST, Spectrum, groups, top};
+use crate::report::pages::spectra::{CURRENT_ORDERS, HIGHEST, Spectrum, top, values};
 use crate::report::pages::waves::{
     Panel, current_figures, demand_key, ideal_key, phase_current, ripple_key, torque_figures,
     trajectory_figures,
 };
 use crate::report::plot::{
-    Bars, Curve, Plane, Stroke, TorqueSpeed, bars, corners, dash, ideal_phase, means, plane,
+    Bar, Bars, Curve, Plane, Stroke, TorqueSpeed, bars, corners, dash, ideal_phase, means, plane,
     torque_speed,
 };
 use crate::report::{Block, Color, Column, Figure, IDEAL, INK, Key, Label, Sign, Table, variant};
@@ -160,14 +160,25 @@ fn current_spectra(data: &Reproduction, speed: usize) -> Vec<Figure> {
             x_title: "order of the harmonic",
             y_title: "% of the fundamental",
             top,
-            colors: Reading::ALL.map(color).to_vec(),
-            groups: groups(both, &CURRENT_ORDERS, |order| {
-                Some(harmonic_of_quasi_square(order))
-            }),
+            groups: CURRENT_ORDERS.map(|order| order.to_string()).to_vec(),
+            bars: bar_of_each(|k| values(&both[k], &CURRENT_ORDERS)),
+            ideal: CURRENT_ORDERS.map(harmonic_of_quasi_square).to_vec(),
         });
         Figure::new(None, format!("{}, spectrum", lettered(*method)), plot)
     });
     figures.collect()
+}
+
+/// A bar for each reading, whose values are given by its place.
+fn bar_of_each(values: impl Fn(usize) -> Vec<Option<f64>>) -> Vec<Bar> {
+    let readings = Reading::ALL.into_iter().enumerate();
+    let bars = readings.map(|(k, reading)| Bar {
+        name: reading.name().to_owned(),
+        variant: None,
+        color: color(reading),
+        values: values(k),
+    });
+    bars.collect()
 }
 
 /// Figures 16 and 17: torque with its 6th and 12th harmonic.
@@ -191,7 +202,7 @@ pub fn torques(data: &Reproduction, speed: usize) -> Vec<Block> {
 }
 
 fn torque_harmonics(data: &Reproduction, speed: usize) -> Vec<Figure> {
-    let values = |method, order| {
+    let at = |method, order| {
         Reading::ALL.map(|reading| {
             let figures = &point(data, (method, reading, speed)).figures;
             if order == 6 {
@@ -202,7 +213,7 @@ fn torque_harmonics(data: &Reproduction, speed: usize) -> Vec<Figure> {
         })
     };
     let orders = [6, 12];
-    let all = Method::ALL.map(|method| orders.map(|order| values(method, order)));
+    let all = Method::ALL.map(|method| orders.map(|order| at(method, order)));
     let greatest = all.iter().flatten().flatten().flatten();
     let top = 1.06
         * greatest
@@ -214,10 +225,9 @@ fn torque_harmonics(data: &Reproduction, speed: usize) -> Vec<Figure> {
             x_title: "method",
             y_title: "% of mean torque",
             top,
-            colors: Reading::ALL.map(color).to_vec(),
-            groups: Method::ALL
-                .map(|method| (lettered(method), values(method, order).to_vec(), None))
-                .to_vec(),
+            groups: Method::ALL.map(lettered).to_vec(),
+            bars: bar_of_each(|k| Method::ALL.map(|method| at(method, order)[k]).to_vec()),
+            ideal: Vec::new(),
         });
         Figure::new(None, format!("{order}th harmonic of the torque"), plot)
     });
