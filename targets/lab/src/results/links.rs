@@ -38,7 +38,13 @@ pub struct FieldLinks {
     pub items: Vec<usize>,
 }
 
-/// The documented items of emitted Rust, in order.
+/// Constants whose documentation is the trait's. (The trait's others are texts about the code.)
+const OF_TRAIT: [(&str, &str); 2] = [
+    ("LIMITS", "Limits of samples, set-point and times."),
+    ("UNITS", "Factors between words and SI units."),
+];
+
+/// The items of emitted Rust that have a documentation, in order.
 pub fn items(rust: &str) -> Vec<Item> {
     let lines: Vec<&str> = rust.lines().collect();
     let mut found = Vec::new();
@@ -49,13 +55,18 @@ pub fn items(rust: &str) -> Vec<Item> {
         } else if line.starts_with("#[") {
             // Attributes stand between documentation and item.
         } else {
-            if let Some(name) = item_name(line).filter(|_| !doc.is_empty()) {
-                let end = place + length(&lines[place..]);
-                found.push(Item {
-                    name: name.to_owned(),
-                    text: doc.join(" "),
-                    lines: place..end,
-                });
+            if let Some(name) = item_name(line) {
+                let of_trait = OF_TRAIT.iter().find(|(of, _)| *of == name);
+                if let Some((_, text)) = of_trait.filter(|_| doc.is_empty()) {
+                    doc.push(text);
+                }
+                if !doc.is_empty() {
+                    found.push(Item {
+                        name: name.to_owned(),
+                        text: doc.join(" "),
+                        lines: place..place + length(&lines[place..]),
+                    });
+                }
             }
             doc.clear();
         }
@@ -196,6 +207,12 @@ fn sections(ast: &SpecAst) -> [(&'static str, &hexagen_codegen::spec::ast::Secti
     ]
 }
 
+/// Words of fields of the motor, which have no table.
+const WORDS: [(&str, &[&str]); 2] = [
+    ("winding", &["star", "delta"]),
+    ("emf_shape", &["trapezoidal", "sinusoidal"]),
+];
+
 /// Specifications in which a written field has another value; the nearest first.
 fn changes(section: &str, name: &str, value: &Value, ast: &SpecAst) -> Vec<SpecAst> {
     let others: Vec<Value> = match value {
@@ -206,10 +223,12 @@ fn changes(section: &str, name: &str, value: &Value, ast: &SpecAst) -> Vec<SpecA
         Value::Word(_) => {
             let rules = KINDS.iter().flat_map(Kind::rules);
             let words = rules.filter(|rule| rule.name == name).flat_map(Rule::words);
-            let words = words.map(|word| Value::Word(word.word.to_owned()));
-            words
-                .filter(|word| word_of(word) != word_of(value))
-                .collect()
+            let words = words.map(|word| word.word);
+            let of_motor = WORDS.iter().filter(|(of, _)| *of == name);
+            let of_motor = of_motor.flat_map(|(_, words)| *words);
+            let words = words.chain(of_motor.copied());
+            let others = words.filter(|word| Some(*word) != word_of(value));
+            others.map(|word| Value::Word(word.to_owned())).collect()
         }
         // Hall codes of the next sector each.
         Value::Integers(all) if !all.is_empty() => {
@@ -338,6 +357,8 @@ mod tests {
             ("hall_codes", "SECTOR"),
             ("adc_offset", "OFFSET"),
             ("maximum_speed", "REV_MIN"),
+            ("precharge", "LIMITS"),
+            ("offset_tolerance", "LIMITS"),
         ] {
             let of = links.iter().find(|of| of.name == name).expect("is a field");
             assert!(of.is_default, "{name}");
