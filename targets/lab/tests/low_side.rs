@@ -55,14 +55,9 @@ fn run_with(
     change(&mut params);
     let mut plant = Plant::new(params, 0.117, rpm * TAU / 60.0).expect("a plant");
     let mut pending = hexagen::Legs::OFF;
-    // Of the first controlled period a later conversion comes before the switches that have just turned on
-    // have settled, while hardly any current flows.
-    let (mut torque, mut at_start) = (0.0, None);
+    let mut torque = 0.0;
     for period in 0..PERIODS {
         let sampled = plant.sample(pending);
-        if at_start.is_none() && pending != hexagen::Legs::OFF {
-            at_start = Some(plant.blind_samples().min(1));
-        }
         let command = drive.step(&sampled);
         let applied = std::mem::replace(&mut pending, command);
         plant.run_period(applied, &mut ());
@@ -71,7 +66,7 @@ fn run_with(
         }
     }
     Run {
-        blind: plant.blind_samples() - at_start.unwrap_or_default(),
+        blind: plant.blind_samples(),
         torque,
         turn_ons: plant.turn_ons(),
         fault: drive.fault(),

@@ -234,7 +234,9 @@ impl Plant {
     }
 
     /// What a channel's sensor shows of its phase's current, and whether that is the current, not cut
-    /// short by the next command.
+    /// short by the next command: the one that flows at its instant, or the one at the turning point, which a
+    /// controller wants. Where legs were off until then no current flows, and a sensor that has not settled
+    /// says so rightly.
     fn read(&mut self, place: usize, next: Legs) -> (f64, bool) {
         let (instant, phase) = (self.params.adc[place].instant, self.params.sensed[place]);
         let leg = if instant < 0.0 {
@@ -254,7 +256,9 @@ impl Plant {
         let until = instant + low_side.aperture;
         let timing = (self.params.timer_period, self.params.pwm_period());
         let is_held = adc::is_held(until, next, phase, timing);
-        (seen, seen == leg.current && is_held)
+        let at_turning_point = self.leg(phase, 0.0).current;
+        let is_right = seen == leg.current || seen == at_turning_point;
+        (seen, is_right && is_held)
     }
 
     /// A leg `t` seconds into the period.
