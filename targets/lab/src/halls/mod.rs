@@ -1,7 +1,7 @@
 //! Hall codes and edge angles from a log of a shorted motor that is turned by hand.
 //!
 //! The currents of a shorted motor tell its EMF and so the rotor's angle, without its Hall sensors and
-//! without a step of the controller: [`flux`]. Whatever the codes do at that angle is then the sensors' order and
+//! without a step of the controller. Whatever the codes do at that angle is then the sensors' order and
 //! their places.
 
 mod edges;
