@@ -98,9 +98,12 @@ pub(crate) fn rows(
         .trim(csv::Trim::All)
         .from_reader(Cursor::new(text));
     let columns = reader.headers()?.clone();
-    let records = reader.into_records().zip(numbers.into_iter().skip(1));
-    Ok(records.map(move |(record, number)| {
-        let (record, line) = (record?, Line(number));
+    let records = reader.into_records().enumerate();
+    Ok(records.map(move |(place, record)| {
+        let record = record?;
+        // A lone carriage return ends a record, but no line.
+        let number = numbers.get(place + 1).copied();
+        let line = Line(number.unwrap_or_else(|| record.position().map_or(0, csv::Position::line)));
         let row = record.deserialize(Some(&columns));
         let row = row.map_err(|error| line.error(&cell(&error, &columns, &record)))?;
         Ok((row, line))

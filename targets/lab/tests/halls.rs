@@ -143,6 +143,18 @@ fn only_the_rows_between_a_brake_and_the_next_call_count() {
         .expect_err("is not shorted")
         .to_string();
     assert!(told.contains("no `brake` among the calls"), "{told}");
+    // A program may call it in each period.
+    let every: String = log
+        .lines()
+        .map(|line| line.trim_end_matches(',').to_owned())
+        .fold(String::new(), |log, line| {
+            match line.ends_with("call") || line.ends_with("brake") {
+                true => log + &line + "\n",
+                false => log + &line + ",brake\n",
+            }
+        });
+    let in_each = found(&drive, &every).expect("tells");
+    assert_eq!(format!("{whole:?}"), format!("{in_each:?}"));
     // A log without that column is of a shorted motor.
     let without: String = log
         .lines()

@@ -118,6 +118,14 @@ fn a_replayed_log_has_the_commands_and_words_of_the_run() {
 }
 
 #[test]
+fn rows_that_end_with_a_carriage_return_count() {
+    let drive = drive("trivedi-keshri-660w", None, "pdcc");
+    let log = "adc_1,adc_2,hall,ticks\r2048,2048,1,5\r\n2048,2048,1,6\r2048,2048,1,7\n";
+    let replayed = replay(&drive, log.as_bytes(), Vec::new()).expect("replays");
+    assert_eq!(replayed.periods, 3);
+}
+
+#[test]
 fn a_log_that_does_not_fit_is_told_with_its_line() {
     let drive = drive("trivedi-keshri-660w", None, "pdcc");
     for (log, told) in [

@@ -169,6 +169,23 @@ fn sensors_that_the_board_does_not_have_are_refused() {
 }
 
 #[test]
+fn of_a_board_that_there_is_not_no_field_is_missing() {
+    let motor = format!(
+        "board = \"vesc-44\"\n{}",
+        MOTOR.replace(
+            "adc_bits = 12\nadc_range = \"40 A\"\ncurrent_sensing = \"in_phase\"\n",
+            ""
+        )
+    );
+    assert!(!motor.contains("adc_bits"));
+    let errors = crate::spec::parse_toml(&motor, "m.toml")
+        .and_then(|ast| crate::spec::check(&ast))
+        .expect_err("is unknown");
+    assert_eq!(errors.as_slice().len(), 1, "{errors}");
+    assert!(errors.to_string().contains("vesc-44"), "{errors}");
+}
+
+#[test]
 fn values_that_the_drive_does_without_are_read() {
     const LOW_SIDE: &str = "current_sensing = \"in_phase\"\n";
     let board = format!("{BOARD}{LOW_SIDE}");

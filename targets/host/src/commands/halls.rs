@@ -7,6 +7,7 @@ use hexagen_codegen::spec::{HALL_ANGLES, MotorSpec};
 use hexagen_lab::halls::{Halls, find};
 use hexagen_lab::report::{Cell, Column, Table};
 use hexagen_lab::text::significant;
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Options of `halls`.
@@ -28,6 +29,14 @@ pub struct Options {
     pub json: bool,
 }
 
+/// What was found, and why the angles are not to be trusted, if so.
+#[derive(Serialize)]
+struct Told<'h> {
+    #[serde(flatten)]
+    halls: &'h Halls,
+    doubt: Option<String>,
+}
+
 /// Edges so far from the stated ones, in degrees, are worth `hall_angles`.
 const WORTH_STATING: f64 = 2.0;
 
@@ -43,7 +52,7 @@ const WORTH_TELLING: f64 = 0.5;
 /// Narrowest over widest current below which gains differ by enough to move edges by a degree.
 const LEAST_ROUNDNESS: f64 = 0.97;
 
-/// Distance of the passes of one edge that no sensor has, degrees.
+/// Distance of the passes of one edge beyond which their mean says little, degrees.
 const MOST_SPREAD: f64 = 4.0;
 
 /// Hystereses of Hall sensors, degrees.
@@ -59,7 +68,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let found = find(&drive, open_log(&options.log)?, row_time)
         .map_err(|error| in_log(&options.log, &error))?;
     if options.json {
-        return print_json(&found);
+        let doubt = doubts(&found);
+        return print_json(&Told {
+            halls: &found,
+            doubt,
+        });
     }
     let motor = &drive.spec.motor;
     let [forward, backward] = found.turns;
@@ -122,7 +135,7 @@ fn lines(found: &Halls, motor: &MotorSpec) -> Vec<String> {
     let ratio = found.emf_constant / motor.emf_constant;
     if (ratio - 1.0).abs() > OTHER_MOTOR {
         lines.push(format!(
-            "the EMF is {ratio:.2} of the stated one: check `back_emf`, `resistance`, `pole_pairs` and the sensors' gain"
+            "the EMF is {ratio:.2} of the stated one: check `back_emf`, `resistance`, `pole_pairs`, the sensors' gain, `--every`, and whether counts clip"
         ));
     }
     if found.inductance_effect > WORTH_TELLING {
@@ -159,7 +172,7 @@ fn doubts(found: &Halls) -> Option<String> {
     }
     if spread > MOST_SPREAD {
         return Some(format!(
-            "the passes of an edge lie up to {spread:.0} deg apart: offsets that drift, counts that clip, or rows that lie not as far apart as `--every` says"
+            "the passes of an edge lie up to {spread:.0} deg apart: a sensor that chatters, magnets of unlike width, an offset that drifts, counts that clip, or rows that lie not as far apart as `--every` says"
         ));
     }
     let lag = hystereses().find(|lag| !LIKELY_HYSTERESIS.contains(lag))?;

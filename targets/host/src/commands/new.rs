@@ -8,7 +8,7 @@ use crate::cli::{Failure, note, print_json, print_text};
 use crate::files::write_new;
 use clap::Args;
 use hexagen_codegen::diagnostics::Code;
-use hexagen_codegen::spec::{BOARDS, check, parse_toml, section_of};
+use hexagen_codegen::spec::{BOARDS, Board, check, parse_toml, section_of};
 use hexagen_lab::LabError;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -268,16 +268,16 @@ impl Draft {
         Ok(draft)
     }
 
-    fn put_on(&mut self, board: &str, file: &Path) -> Result<(), Failure> {
-        let name = file.display().to_string();
-        let mut ast = parse_toml(&entry(BOARD, board), &name).map_err(LabError::from)?;
-        ast.read_board(Path::new(""), &name, &mut vec![])
-            .map_err(LabError::from)?;
-        let fields = ast.board.and_then(|board| board.file).map(|file| {
+    /// Takes the fields of a board of the library, or of a file beside the new one.
+    fn put_on(&mut self, name: &str, file: &Path) -> Result<(), LabError> {
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let mut board = Board::named(name.into())?;
+        board.read(Path::new(""), folder)?;
+        let fields = board.file.map(|file| {
             let fields = file.inverter.fields.into_iter();
             fields.map(|field| field.name).collect()
         });
-        self.board = Some((board.to_owned(), fields.unwrap_or_default()));
+        self.board = Some((name.to_owned(), fields.unwrap_or_default()));
         Ok(())
     }
 
@@ -320,10 +320,15 @@ impl Draft {
                 "The board, or its file: {}; empty for none of them.",
                 known.join(", ")
             ));
-            match answer(&mut answers, "vesc-4")? {
-                Some(board) if !board.is_empty() => self.put_on(&board, file)?,
-                Some(_) => {}
-                None => return Ok(()),
+            loop {
+                match answer(&mut answers, "vesc-4")? {
+                    None => return Ok(()),
+                    Some(board) if board.is_empty() => break,
+                    Some(board) => match self.put_on(&board, file) {
+                        Ok(()) => break,
+                        Err(error) => note(&error.to_string()),
+                    },
+                }
             }
         }
         let lines: Vec<&Line> = self.all_lines().collect();

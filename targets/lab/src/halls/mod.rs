@@ -129,11 +129,15 @@ fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
         let at = |what: String| line.error(&what);
         row.check(&spec.inverter).map_err(at)?;
         if let Some(call) = row.call().map_err(at)? {
-            if !std::mem::replace(&mut has_calls, true) {
+            // Rows before the first call are of another state; a `brake` again changes nothing.
+            let is_first = !std::mem::replace(&mut has_calls, true);
+            if is_first {
                 stretches.clear();
             }
-            is_short = call == Call::Brake;
-            stretches.push(Vec::new());
+            let was_short = std::mem::replace(&mut is_short, call == Call::Brake);
+            if is_first || !(was_short && is_short) {
+                stretches.push(Vec::new());
+            }
         }
         if is_short && let Some(stretch) = stretches.last_mut() {
             check_range(spec, &row).map_err(at)?;
