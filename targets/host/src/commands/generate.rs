@@ -1,24 +1,18 @@
 //! `hexagen generate`: code, intermediate form or data sheet of one controller.
 
-use crate::cli::{Emit, Failure, note, print_text, tell_warnings, write_file};
+use crate::cli::{DriveArguments, Emit, Failure, note, print_text, tell_warnings, write_file};
 use clap::Args;
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
-use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
+use hexagen_lab::engine::Prepared;
 use std::path::{Path, PathBuf};
 
 /// Options of `generate`.
 #[derive(Args, Clone, Debug)]
 pub struct Options {
-    /// Motor file, or name of a library motor
-    #[arg(value_name = "MOTOR")]
-    pub motor: String,
-    /// Board, a name of the library or a file [default: the motor file's]
-    #[arg(long, value_name = "BOARD")]
-    pub board: Option<String>,
-    /// Controller variant [default: the motor file's]
-    #[arg(long, value_name = "NAME[:KEY=VALUE,…]")]
-    pub controller: Option<String>,
+    /// The drive.
+    #[command(flatten)]
+    pub drive: DriveArguments,
     /// Text to print
     #[arg(long, value_enum, default_value = "rust")]
     pub emit: Emit,
@@ -52,12 +46,7 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
 /// # Errors
 /// Diagnostics, or a file that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let plant = PlantOptions {
-        board: options.board.clone(),
-        ..PlantOptions::default()
-    };
-    let motor = SelectedMotor::find(&options.motor, &plant)?;
-    let drive = motor.prepare(options.controller.as_deref())?;
+    let drive = options.drive.prepare()?;
     tell_warnings(&drive);
     match options.emit {
         Emit::Gappa => return write_scripts(&drive, options.out.as_deref()),
