@@ -71,7 +71,7 @@ fn every_motors_page_is_small_and_nothing_overlaps() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("is read");
     for motor in motors {
         let name = motor.source.name;
-        let plan = Plan::of(&name).expect("a motor of the library");
+        let plan = Plan::of(&name, None).expect("a motor of the library");
         let (data, _) = plan.run(&()).expect("every variant runs");
         let file = file(&results_page(&data), "motors");
         let size = fs::metadata(&file).expect("it is there").len();

@@ -90,11 +90,7 @@ impl DriveArguments {
     /// # Errors
     /// Diagnostics, or a name that is not in the library.
     pub fn select(&self) -> Result<SelectedMotor, LabError> {
-        let on_board = PlantOptions {
-            board: self.board.clone(),
-            ..PlantOptions::default()
-        };
-        SelectedMotor::find(&self.motor, &on_board)
+        SelectedMotor::find(&self.motor, &PlantOptions::on_board(self.board.as_deref()))
     }
 
     /// The drive.

@@ -96,10 +96,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_json(&checked)?;
     } else {
         tell_warnings(&drive);
-        let next = match &asked.board {
-            Some(board) => format!("hexagen simulate {} --board {board}", asked.motor),
-            None => format!("hexagen report {}", asked.motor),
-        };
+        let board = asked.board.iter().map(|board| format!(" --board {board}"));
+        let next = format!(
+            "hexagen report {}{}",
+            asked.motor,
+            board.collect::<String>()
+        );
         print_text(&checked.lines(&drive, &next).join("\n"))?;
     }
     if checked.works {

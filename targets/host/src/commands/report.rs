@@ -17,6 +17,9 @@ pub struct Options {
     /// Motor file, or name of a library motor [default: the 660 W motor of the paper]
     #[arg(value_name = "MOTOR")]
     pub motor: Option<String>,
+    /// Board, a name of the library or a file [default: the motor file's]
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
     /// Folder of the page [default: target/hexagen]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -34,7 +37,8 @@ pub struct Options {
 /// No such motor, diagnostics, or a page that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
-    let plan = Plan::of(options.motor.as_deref().unwrap_or(PAPER_MOTOR))?;
+    let motor = options.motor.as_deref().unwrap_or(PAPER_MOTOR);
+    let plan = Plan::of(motor, options.board.as_deref())?;
     // An unwritable folder is reported before the long run.
     render::prepare_folder(&folder)?;
     let (data, checked) = plan.run(&Bar::default())?;

@@ -380,6 +380,7 @@ pub fn data() -> Results {
         generator: "hexagen 0.1.0".to_owned(),
         name: spec.name,
         file: "trivedi-keshri-660w".to_owned(),
+        board: None,
         motor: spec.motor,
         inverter: spec.inverter,
         source: Some("M. S. Trivedi, R. K. Keshri, doi 10.1109/ACCESS.2020.2978695, Table 4 <text & \"quotes\">".to_owned()),

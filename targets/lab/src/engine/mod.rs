@@ -14,7 +14,7 @@ mod verifier;
 
 pub use built_in::{AnySubject, BuiltIn, Library, built_in, drives, library};
 pub use external::BuildError;
-pub use motor::{MotorSource, SourceError};
+pub use motor::{MotorSource, SourceError, stem};
 pub use plant::{plant_of, reach_of, run_of};
 pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
 pub use selected::{PerSensor, PlantOptions, SelectedMotor};

@@ -82,7 +82,8 @@ impl From<&Library> for MotorSource {
     }
 }
 
-fn stem(path: &Path) -> String {
+/// The name of a file without folder and ending.
+pub fn stem(path: &Path) -> String {
     path.file_stem()
         .unwrap_or_default()
         .to_string_lossy()

@@ -179,6 +179,14 @@ fn board_of(given: &str) -> Result<Board, LabError> {
 }
 
 impl PlantOptions {
+    /// Nothing changed, but for a board in place of the motor file's if one is given.
+    pub fn on_board(board: Option<&str>) -> Self {
+        Self {
+            board: board.map(str::to_owned),
+            ..Self::default()
+        }
+    }
+
     /// ADC bits and range apply to the controller, too: they override the specification.
     fn change_specification(&self, ast: &mut SpecAst) -> Result<(), LabError> {
         let bits = self.adc_bits.map(|bits| format!("adc_bits = {bits}"));

@@ -5,7 +5,7 @@ use super::{
     Verification, design_table, held, links, own_row,
 };
 use crate::accuracy::{WORDS, at_speeds, one_step, with_word};
-use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor};
+use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor, stem};
 use crate::envelope::TorqueBounds;
 use crate::robustness::robustness;
 use crate::text::significant;
@@ -15,11 +15,14 @@ use hexagen_codegen::design::Envelope;
 use hexagen_codegen::ir::PathCost;
 use hexagen_codegen::spec::{HallCapture, KINDS};
 use rayon::prelude::*;
+use std::path::Path;
 
 /// A motor with the rows of its table, before the runs.
 #[derive(Debug)]
 pub struct Plan {
     given: String,
+    /// A board in place of the motor file's.
+    on_board: PlantOptions,
     motor: SelectedMotor,
     own: Prepared,
     rows: Vec<Planned>,
@@ -29,12 +32,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Takes all variants of a motor file or of a library motor through the generator.
+    /// Takes all variants of a motor file or of a library motor through the generator, on a board in
+    /// place of the motor file's if one is given.
     ///
     /// # Errors
-    /// No such motor, or diagnostics of its own controller or of all variants.
-    pub fn of(given: &str) -> Result<Self, LabError> {
-        let motor = SelectedMotor::find(given, &PlantOptions::default())?;
+    /// No such motor or board, or diagnostics of its own controller or of all variants.
+    pub fn of(given: &str, board: Option<&str>) -> Result<Self, LabError> {
+        let on_board = PlantOptions::on_board(board);
+        let motor = SelectedMotor::find(given, &on_board)?;
         let own = motor.prepare_for_torque(None)?;
         let is_paper = motor.source.name == PAPER_MOTOR;
         let mut notes = Vec::new();
@@ -43,6 +48,7 @@ impl Plan {
         rows.insert(0, of_file(&own));
         Ok(Self {
             given: given.to_owned(),
+            on_board,
             motor,
             own,
             rows,
@@ -65,6 +71,7 @@ impl Plan {
         notes.extend(PAPER_NOTES.map(str::to_owned));
         Ok(Self {
             given: PAPER_MOTOR.to_owned(),
+            on_board: PlantOptions::default(),
             motor,
             own,
             rows,
@@ -83,7 +90,7 @@ impl Plan {
         let variants = self.simulate(progress)?;
         let errors = errors(&self.motor, &mut self.notes)?;
         let kinds = KINDS.map(|kind| kind.name.to_owned());
-        let robustness = robustness(&self.given, &kinds, &PlantOptions::default(), progress)
+        let robustness = robustness(&self.given, &kinds, &self.on_board, progress)
             .map_err(|error| self.notes.push(format!("Robustness: {error}")))
             .ok();
         let data = Results {
@@ -123,7 +130,8 @@ impl Plan {
         Results {
             generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
             name: own.spec.name.clone(),
-            file: self.motor.source.name.clone(),
+            file: self.file(),
+            board: self.motor.ast.board.as_ref().map(|of| of.name.text.clone()),
             motor: own.spec.motor.clone(),
             inverter: own.spec.inverter.clone(),
             source: source(own),
@@ -143,6 +151,15 @@ impl Plan {
             robustness: None,
             marks: if self.is_paper { paper_marks() } else { vec![] },
             notes: self.notes,
+        }
+    }
+
+    /// The motor's name, with that of a board in place of the motor file's.
+    fn file(&self) -> String {
+        let motor = self.motor.source.name.clone();
+        match &self.on_board.board {
+            Some(board) => format!("{motor}-{}", stem(Path::new(board))),
+            None => motor,
         }
     }
 

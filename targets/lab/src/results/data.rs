@@ -20,10 +20,13 @@ pub struct Results {
     pub generator: String,
     /// Name of the motor's type, `UpperCamelCase`.
     pub name: String,
-    /// The motor file's name, without extension; names the page's file.
+    /// The motor file's name, without extension, and that of a board in place of its own; names the
+    /// page's file.
     pub file: String,
     /// The motor.
     pub motor: MotorSpec,
+    /// Name or file of the board, if there is one.
+    pub board: Option<String>,
     /// Inverter, timer and sensors.
     pub inverter: InverterSpec,
     /// Source of the motor's data, one paragraph.

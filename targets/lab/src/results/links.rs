@@ -32,10 +32,21 @@ pub struct FieldLinks {
     pub name: String,
     /// Its value as written, or as the default would be written.
     pub value: String,
-    /// Whether the value is the default.
-    pub is_default: bool,
+    /// Who states it.
+    pub origin: Origin,
     /// Places of the items of the emitted code that differ once the field does.
     pub items: Vec<usize>,
+}
+
+/// Who states a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// The motor's file.
+    File,
+    /// The board's file.
+    Board,
+    /// Nobody: it is the default.
+    Default,
 }
 
 /// Constants whose documentation is the trait's. (The trait's others are texts about the code.)
@@ -101,8 +112,8 @@ fn length(lines: &[&str]) -> usize {
     lines.len()
 }
 
-/// All fields of a motor file with what follows from each in its controller's code, and those that
-/// it leaves to their defaults, section by section.
+/// All fields of a motor file and of its board with what follows from each in its controller's code,
+/// and those that they leave to their defaults, section by section.
 pub fn links(motor: &SelectedMotor, rust: &str) -> Vec<FieldLinks> {
     let ast = &motor.ast;
     let mut fields = Vec::new();
@@ -110,25 +121,44 @@ pub fn links(motor: &SelectedMotor, rust: &str) -> Vec<FieldLinks> {
         for field in of.fields.iter().filter(|field| field.name != "description") {
             let changed = changes(section, &field.name, &field.value, ast);
             let value = text(&field.value);
-            fields.push((section, field.name.clone(), value, false, changed));
+            fields.push((section, field.name.clone(), value, Origin::File, changed));
         }
         match section {
             "controller" => fields.extend(defaults(ast)),
+            "inverter" => {
+                fields.extend(of_board(ast));
+                fields.extend(unstated_of(section, ast));
+            }
             _ => fields.extend(unstated_of(section, ast)),
         }
     }
     let linked = fields.into_iter();
-    let linked = linked.map(|(section, name, value, is_default, changed)| FieldLinks {
+    let linked = linked.map(|(section, name, value, origin, changed)| FieldLinks {
         section,
         name,
         value,
-        is_default,
+        origin,
         items: changed
             .iter()
             .find_map(|ast| differing(ast, rust))
             .unwrap_or_default(),
     });
     linked.collect()
+}
+
+/// The board's fields that the motor file does not replace.
+fn of_board(ast: &SpecAst) -> Vec<Changed> {
+    let file = ast.board.as_ref().and_then(|board| board.file.as_ref());
+    let fields = file.iter().flat_map(|file| &file.inverter.fields);
+    let fields = fields.filter(|field| ast.inverter.field(&field.name).is_none());
+    let changed = fields.map(|field| {
+        let mut stated = ast.clone();
+        stated.inverter.fields.push(field.clone());
+        let others = changes("inverter", &field.name, &field.value, &stated);
+        let value = text(&field.value);
+        ("inverter", field.name.clone(), value, Origin::Board, others)
+    });
+    changed.collect()
 }
 
 /// The fields of motor or inverter that the file leaves to their defaults.
@@ -146,7 +176,8 @@ fn unstated_of(section: &'static str, ast: &SpecAst) -> Vec<Changed> {
             let value = &stated_value(&stated, section, field.name);
             changes(section, field.name, value, &stated)
         };
-        (section, field.name.to_owned(), field.value, true, others)
+        let name = field.name.to_owned();
+        (section, name, field.value, Origin::Default, others)
     });
     changed.collect()
 }
@@ -159,9 +190,8 @@ fn stated_value(ast: &SpecAst, section: &str, name: &str) -> Value {
     field.map_or(Value::Integers(Vec::new()), |field| field.value.clone())
 }
 
-/// A field: section, name, value, whether that is the default, and specifications that differ in
-/// it.
-type Changed = (&'static str, String, String, bool, Vec<SpecAst>);
+/// A field: section, name, value, who states it, and specifications that differ in it.
+type Changed = (&'static str, String, String, Origin, Vec<SpecAst>);
 
 /// The options of the controller that the file leaves to their defaults.
 fn defaults(ast: &SpecAst) -> Vec<Changed> {
@@ -182,7 +212,7 @@ fn defaults(ast: &SpecAst) -> Vec<Changed> {
             "controller",
             rule.name.to_owned(),
             preset.to_owned(),
-            true,
+            Origin::Default,
             changed.collect(),
         ))
     });
@@ -317,7 +347,7 @@ fn bodies(rust: &str) -> Vec<(String, String)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{differing, items, links, unstated};
+    use super::{Origin, differing, items, links, unstated};
     use crate::engine::{PlantOptions, SelectedMotor};
     use hexagen_codegen::spec::check;
 
@@ -347,6 +377,27 @@ mod tests {
     }
 
     #[test]
+    fn values_of_a_board_lead_to_their_formulas() {
+        let (motor, rust) = motor("hoverboard-hub");
+        let links = links(&motor, &rust);
+        let items = items(&rust);
+        for (name, formula) in [("adc_gain", "GAIN"), ("dead_time", "PULSE_TOP")] {
+            let mut of = links.iter().filter(|of| of.name == name);
+            let field = of.next().expect("is a field");
+            assert_eq!((field.origin, of.next()), (Origin::Board, None), "{name}");
+            let names: Vec<&str> = field
+                .items
+                .iter()
+                .map(|k| items[*k].name.as_str())
+                .collect();
+            assert!(
+                names.iter().any(|name| name.contains(formula)),
+                "{name}: {names:?}"
+            );
+        }
+    }
+
+    #[test]
     fn defaults_of_motor_and_inverter_lead_to_their_formulas() {
         let (motor, rust) = motor("linix-45zwn24-40");
         let links = links(&motor, &rust);
@@ -361,7 +412,7 @@ mod tests {
             ("offset_tolerance", "LIMITS"),
         ] {
             let of = links.iter().find(|of| of.name == name).expect("is a field");
-            assert!(of.is_default, "{name}");
+            assert_eq!(of.origin, Origin::Default, "{name}");
             let names: Vec<&str> = of.items.iter().map(|k| items[*k].name.as_str()).collect();
             assert!(
                 names.iter().any(|name| name.contains(formula)),

@@ -16,7 +16,7 @@ pub use expected::{
     Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
     judge_mean, judge_pp, judge_rms, own_row,
 };
-pub use links::{FieldLinks, Item, items, links};
+pub use links::{FieldLinks, Item, Origin, items, links};
 pub use planned::{Planned, held};
 
 /// The motor of the paper.

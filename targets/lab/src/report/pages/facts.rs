@@ -3,7 +3,7 @@
 use crate::report::{Block, Cell, Column, Table};
 use crate::results::Results;
 use crate::text::{grouped, number, quantity};
-use hexagen_codegen::spec::{BusSource, EmfShape};
+use hexagen_codegen::spec::{BusSource, CurrentSensing, EmfShape};
 use std::f64::consts::TAU;
 
 /// The page's title.
@@ -110,7 +110,12 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
         ),
     };
     let half_range = inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1));
-    vec![
+    let sensors = match inverter.current_sensing {
+        CurrentSensing::InPhase => "in the phases",
+        CurrentSensing::LowSide(_) => "in the low legs",
+    };
+    let board = data.board.iter().map(|board| ("Board", board.clone()));
+    let rows = [
         ("Bus voltage", bus),
         ("Control period", quantity(inverter.t_s, "s")),
         ("PWM frequency", quantity(1.0 / inverter.pwm_period(), "Hz")),
@@ -119,6 +124,7 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
             inverter.timer_period.to_string(),
         ),
         ("Dead time", quantity(inverter.dead_time, "s")),
+        ("Current sensors", sensors.to_owned()),
         (
             "Current ADCs",
             format!(
@@ -129,7 +135,8 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
         ),
         ("One count", quantity(inverter.adc_gain, "A")),
         ("Trip level", quantity(inverter.trip_current, "A")),
-    ]
+    ];
+    board.chain(rows).collect()
 }
 
 /// Peak line-to-line EMF over peak phase EMF: twice the shape at 60 degrees, where two phases

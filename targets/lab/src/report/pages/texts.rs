@@ -1,7 +1,7 @@
 //! Emitted code beside its specification; data sheet and normalised specification, folded.
 
 use crate::report::{Block, Linked};
-use crate::results::{GeneratedTexts, Item, Results, items};
+use crate::results::{GeneratedTexts, Item, Origin, Results, items};
 
 /// The own controller's specification, formulas and code side by side; the code alone where no
 /// links are known.
@@ -18,11 +18,12 @@ pub fn linked(data: &Results) -> Vec<Block> {
                 the tab key leads from list to list, arrow keys within one, and Enter marks.";
     let items = items(&texts.rust);
     let fields = data.links.iter().map(|field| {
-        let default = if field.is_default { " (default)" } else { "" };
-        let text = format!(
-            "{}.{} = {}{default}",
-            field.section, field.name, field.value
-        );
+        let origin = match field.origin {
+            Origin::File => "",
+            Origin::Board => " (board)",
+            Origin::Default => " (default)",
+        };
+        let text = format!("{}.{} = {}{origin}", field.section, field.name, field.value);
         (text, field.items.clone())
     });
     let formulas = items.iter().map(|item| {
