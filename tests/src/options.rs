@@ -293,6 +293,29 @@ const LOOSE: &[Row] = &[
         ],
     ),
     (
+        "emf_shape",
+        &[
+            ("motor's", &[]),
+            (
+                "harmonics",
+                &[
+                    ("motor", "emf_shape", "\"harmonics\""),
+                    ("motor", "emf_orders", "[3, 5, 7, 23]"),
+                    (
+                        "motor",
+                        "emf_amplitudes",
+                        "[\"15 %\", \"5 %\", \"-2 %\", \"0.5 %\"]",
+                    ),
+                    (
+                        "motor",
+                        "emf_phases",
+                        "[\"0 deg\", \"20 deg\", \"0 deg\", \"45 deg\"]",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
         "speed_loop",
         &[
             ("off", &[]),

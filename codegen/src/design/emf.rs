@@ -4,72 +4,19 @@
 //! peak.
 
 use crate::spec::EmfShape;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
-
-/// Integral of the unit EMF of phase a from 0 to `theta`, with zero mean over a turn.
-fn phase_integral(shape: EmfShape, theta: f64) -> f64 {
-    match shape {
-        EmfShape::Sinusoidal => -theta.cos(),
-        EmfShape::Trapezoidal { flat_top_deg } => {
-            let ramp = (PI - flat_top_deg.to_radians()) / 2.0;
-            // From the positive zero crossing the integral rises by `area` over half a turn and
-            // falls over the other half.
-            let rise = |x: f64| {
-                if x <= ramp {
-                    x * x / (2.0 * ramp)
-                } else {
-                    x - ramp / 2.0
-                }
-            };
-            let area = 2.0 * rise(FRAC_PI_2);
-            let turned = theta.rem_euclid(TAU);
-            let (half, sign) = if turned < PI {
-                (turned, 1.0)
-            } else {
-                (turned - PI, -1.0)
-            };
-            let risen = if half <= FRAC_PI_2 {
-                rise(half)
-            } else {
-                area - rise(PI - half)
-            };
-            sign * (risen - area / 2.0)
-        }
-    }
-}
+use std::f64::consts::TAU;
 
 const THIRD: f64 = TAU / 3.0;
 
-/// The part of phase a's unit EMF that drives current: f_a less the mean of the three phases.
-pub fn zero_sum_shape(shape: EmfShape, theta: f64) -> f64 {
-    let f = |shift: f64| shape.at(theta - shift);
-    f(0.0) - (f(0.0) + f(THIRD) + f(2.0 * THIRD)) / 3.0
-}
-
-/// Integral of [`zero_sum_shape`] over the angle, zero mean, radians.
+/// Integral over the angle of the part of phase a's unit EMF that drives current, zero mean, radians.
 pub fn zero_sum_integral(shape: EmfShape, theta: f64) -> f64 {
-    let f = |shift: f64| phase_integral(shape, theta - shift);
+    let f = |shift: f64| shape.integral(theta - shift);
     f(0.0) - (f(0.0) + f(THIRD) + f(2.0 * THIRD)) / 3.0
-}
-
-/// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
-pub fn squared_length(shape: EmfShape, theta: f64) -> f64 {
-    length_of(zero_sum_phases(shape, theta))
-}
-
-/// 2/3 of the sum of squares.
-fn length_of(phases: [f64; 3]) -> f64 {
-    phases.iter().map(|value| value.powi(2)).sum::<f64>() * 2.0 / 3.0
 }
 
 /// A function of phase a for the three phases.
 pub fn phases(of_a: impl Fn(f64) -> f64, theta: f64) -> [f64; 3] {
     [0.0, THIRD, 2.0 * THIRD].map(|shift| of_a(theta - shift))
-}
-
-/// [`zero_sum_shape`] of the three phases.
-pub fn zero_sum_phases(shape: EmfShape, theta: f64) -> [f64; 3] {
-    phases(|theta| zero_sum_shape(shape, theta), theta)
 }
 
 /// Phase-a current per ampere of set-point, parallel to the EMF and of constant torque:
@@ -81,8 +28,8 @@ pub fn proportional_current(shape: EmfShape, ratio: f64, theta: f64) -> f64 {
 
 /// The same for the three phases.
 pub fn proportional_currents(shape: EmfShape, ratio: f64, theta: f64) -> [f64; 3] {
-    let phases = zero_sum_phases(shape, theta);
-    let length = length_of(phases);
+    let length = shape.squared_length(theta);
+    let phases = shape.zero_sum(theta);
     phases.map(|value| 2.0 / 3.0 * ratio * value / length)
 }
 
@@ -156,6 +103,7 @@ impl Parabolas {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     const SHAPES: [EmfShape; 3] = [
         EmfShape::Sinusoidal,
@@ -175,7 +123,7 @@ mod tests {
                     - zero_sum_integral(shape, theta - 1e-5))
                     / 2e-5;
                 assert!(
-                    (slope - zero_sum_shape(shape, theta)).abs() < 1e-4,
+                    (slope - shape.zero_sum(theta)[0]).abs() < 1e-4,
                     "{shape:?} at {theta}"
                 );
                 mean += zero_sum_integral(shape, theta) / 720.0;
@@ -190,9 +138,9 @@ mod tests {
             flat_top_deg: 120.0,
         };
         // Entry of S3 (90 degrees): (4/3, 0) E; entry of S2 (30 degrees): (2/3, -2/sqrt3) E.
-        assert!((zero_sum_shape(shape, PI / 2.0) - 4.0 / 3.0).abs() < 1e-12);
-        assert!((zero_sum_shape(shape, PI / 6.0) - 2.0 / 3.0).abs() < 1e-12);
-        assert!((squared_length(shape, PI / 6.0).sqrt() - 4.0 / 3.0).abs() < 1e-12);
+        assert!((shape.zero_sum(PI / 2.0)[0] - 4.0 / 3.0).abs() < 1e-12);
+        assert!((shape.zero_sum(PI / 6.0)[0] - 2.0 / 3.0).abs() < 1e-12);
+        assert!((shape.squared_length(PI / 6.0).sqrt() - 4.0 / 3.0).abs() < 1e-12);
     }
 
     #[test]

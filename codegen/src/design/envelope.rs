@@ -9,7 +9,7 @@
 //! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
 //! its two phases; its commutations take more and are left out.
 
-use super::emf::{phases, proportional_currents, zero_sum_integral, zero_sum_phases};
+use super::emf::{phases, proportional_currents, zero_sum_integral};
 use crate::spec::{EmfShape, Reference, Spec};
 use std::f64::consts::FRAC_PI_3;
 
@@ -205,7 +205,7 @@ impl Envelope {
     /// per mechanical rad/s.
     pub fn mean_emf(&self, theta: f64, turn: f64) -> [f64; 3] {
         let mean = if turn < 1e-6 {
-            zero_sum_phases(self.emf_shape, theta)
+            self.emf_shape.zero_sum(theta)
         } else {
             let integral = |theta| zero_sum_integral(self.emf_shape, theta);
             let (from, to) = (phases(integral, theta), phases(integral, theta + turn));

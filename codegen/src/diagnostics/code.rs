@@ -81,6 +81,8 @@ codes! {
     UnwantedUnit = 212,
     /// A unit that says one of two quantities.
     AmbiguousUnit = 213,
+    /// Data of an EMF shape that no motor has, or that contradict each other.
+    EmfShape = 214,
     /// The control period is too long for L/R.
     PeriodTooLong = 301,
     /// The bus cannot drive the motor at rated speed.

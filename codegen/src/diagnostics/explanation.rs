@@ -203,6 +203,12 @@ impl Code {
                 "pole_pairs = 4\nhall_codes = [1, 5, 4, 6, 2, 3]",
                 "Turn the motor forward by hand with the legs off, and note the codes in the order in which they come; `hall_angles`, if any, are those at which these sectors begin, about -30, 30, 90, 150, 210 and 270 degrees.",
             ),
+            Self::EmfShape => say(
+                "Harmonics are stated as lists of equal length, of odd orders from 3 to 23, in percent of the fundamental; samples are the voltage between two terminals over one electrical period, whose half waves are opposite.",
+                "emf_shape = \"harmonics\"\nemf_orders = [2]\nemf_amplitudes = [\"4 %\"]",
+                "emf_shape = \"harmonics\"\nemf_orders = [5]\nemf_amplitudes = [\"4 %\"]",
+                "Record the voltage between two terminals of the turned motor, legs off, over one whole electrical period; `emf_samples_speed` may be left out where the amplitude is not known.",
+            ),
             _ => say(
                 "The field takes a plain number.",
                 "pole_pairs = \"4 A\"",

@@ -3,7 +3,6 @@
 use super::current_loop::LoopDesign;
 use super::law::{Period, law};
 use super::trust::TRAPEZOID_PER_FILTER;
-use crate::design::emf::zero_sum_shape;
 use crate::spec::{EmfShape, EmfSource, InverterSpec, Spec};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -12,7 +11,7 @@ use std::f64::consts::{FRAC_PI_3, TAU};
 /// with r of the EMF's length, has a solution below 1 from 3.33 on; trapezoids were simulated.
 fn loses(shape: EmfShape) -> f64 {
     match shape {
-        EmfShape::Sinusoidal => 10.0 / 3.0,
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => 10.0 / 3.0,
         EmfShape::Trapezoidal { .. } => TRAPEZOID_PER_FILTER,
     }
 }
@@ -129,7 +128,13 @@ fn peak(shape: EmfShape) -> f64 {
             let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
             let crossings = (0..6).map(|n| f64::from(n) * FRAC_PI_3);
             let ends = crossings.flat_map(|angle| [angle - ramp, angle + ramp]);
-            ends.map(|angle| zero_sum_shape(shape, angle).abs())
+            ends.map(|angle| shape.zero_sum(angle)[0].abs())
+                .fold(0.0, f64::max)
+        }
+        EmfShape::Harmonics(_) => {
+            let angles = (0..360).map(|degree| f64::from(degree).to_radians());
+            angles
+                .map(|angle| shape.zero_sum(angle)[0].abs())
                 .fold(0.0, f64::max)
         }
     }

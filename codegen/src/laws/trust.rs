@@ -41,6 +41,8 @@ pub fn trust_in_estimate(spec: &Spec) -> Option<Trust> {
     }
     let (shaped, per_filter) = match motor.emf_shape {
         EmfShape::Sinusoidal => (SINE, SINE_PER_FILTER),
+        // It is turned as a sine, which it is not.
+        EmfShape::Harmonics(_) => (OTHER, SINE_PER_FILTER),
         EmfShape::Trapezoidal { flat_top_deg } => {
             let lost = OTHER_PER_DEGREE * (flat_top_deg - 120.0).abs();
             ((TRAPEZOID - lost).max(OTHER), TRAPEZOID_PER_FILTER)

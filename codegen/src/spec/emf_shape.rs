@@ -4,7 +4,7 @@
 //! third of a turn; shapes have half-wave symmetry and amplitude 1.
 
 use super::{EmfShape, Reference};
-use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6, PI, SQRT_2, TAU};
 
 impl EmfShape {
     /// Unit EMF of phase a at the electrical angle `theta_e` (radian), from -1 to 1.
@@ -21,7 +21,62 @@ impl EmfShape {
                 };
                 sign * (half.min(PI - half) / ramp).clamp(0.0, 1.0)
             }
+            Self::Harmonics(series) => series.at(theta_e),
         }
+    }
+
+    /// Integral of the unit EMF of phase a over the angle, with zero mean over a turn, radian.
+    pub fn integral(self, theta_e: f64) -> f64 {
+        match self {
+            Self::Sinusoidal => -theta_e.cos(),
+            Self::Trapezoidal { flat_top_deg } => {
+                let ramp = (PI - flat_top_deg.to_radians()) / 2.0;
+                // From the positive zero crossing the integral rises by `area` over half a turn and
+                // falls over the other half.
+                let rise = |x: f64| {
+                    if x <= ramp {
+                        x * x / (2.0 * ramp)
+                    } else {
+                        x - ramp / 2.0
+                    }
+                };
+                let area = 2.0 * rise(FRAC_PI_2);
+                let turned = theta_e.rem_euclid(TAU);
+                let (half, sign) = if turned < PI {
+                    (turned, 1.0)
+                } else {
+                    (turned - PI, -1.0)
+                };
+                let risen = if half <= FRAC_PI_2 {
+                    rise(half)
+                } else {
+                    area - rise(PI - half)
+                };
+                sign * (risen - area / 2.0)
+            }
+            Self::Harmonics(series) => series.integral(theta_e),
+        }
+    }
+
+    /// The part of the three unit EMFs that drives current: each less their mean.
+    pub fn zero_sum(self, theta_e: f64) -> [f64; 3] {
+        let f = [0.0, 1.0, 2.0].map(|lag| self.at(theta_e - lag * TAU / 3.0));
+        let mean = (f[0] + f[1] + f[2]) / 3.0;
+        f.map(|value| value - mean)
+    }
+
+    /// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
+    pub fn squared_length(self, theta_e: f64) -> f64 {
+        let squares = self.zero_sum(theta_e).map(|value| value * value);
+        squares.iter().sum::<f64>() * 2.0 / 3.0
+    }
+
+    /// Least length of the unit EMF in the plane.
+    pub fn least_length(self) -> f64 {
+        // The shapes repeat with each sixth of a turn.
+        let angles = (0..60).map(|degree| f64::from(degree).to_radians());
+        let squares = angles.map(|theta_e| self.squared_length(theta_e));
+        squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
     /// Amplitude of the fundamental.
@@ -32,14 +87,18 @@ impl EmfShape {
                 let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
                 4.0 / PI * ramp.sin() / ramp
             }
+            Self::Harmonics(series) => series.fundamental(),
         }
     }
 
     /// Peak of the line-to-line EMF over the peak of the phase EMF: 2 for a flat top of at least
     /// 60 degrees, sqrt(3) for a sine.
     pub fn line_to_line_peak(self) -> f64 {
-        // f is concave over its half wave, so f(x) + f(120 degrees - x) peaks in the middle.
-        2.0 * self.at(PI / 3.0)
+        match self {
+            // f is concave over its half wave, so f(x) + f(120 degrees - x) peaks in the middle.
+            Self::Sinusoidal | Self::Trapezoidal { .. } => 2.0 * self.at(PI / 3.0),
+            Self::Harmonics(series) => series.line_peak(),
+        }
     }
 
     /// Mean torque per ampere of a quasi-square current over the phase constant: the mean of
@@ -56,23 +115,28 @@ impl EmfShape {
                     ((ramp * ramp - 900.0) / (2.0 * ramp) + 90.0 - ramp) / 30.0
                 }
             }
+            Self::Harmonics(series) => {
+                let line =
+                    |theta_e| series.integral(theta_e) - series.integral(theta_e - TAU / 3.0);
+                (line(FRAC_PI_2) - line(FRAC_PI_6)) * 3.0 / PI
+            }
         }
     }
 
-    /// Mean torque per ampere of the rated current's peak over the phase constant: that of a sinusoidal
-    /// current with a sinusoidal EMF, else of a quasi-square one.
+    /// Mean torque per ampere of the rated current's peak over the phase constant: that of a quasi-square
+    /// current with a trapezoidal EMF, else of a sinusoidal one.
     pub fn rated_factor(self) -> f64 {
         match self {
-            Self::Sinusoidal => self.sine_factor(),
+            Self::Sinusoidal | Self::Harmonics(_) => self.sine_factor(),
             Self::Trapezoidal { .. } => self.quasi_square_factor(),
         }
     }
 
-    /// Peak of the rated current over its root mean square: of a sine with a sinusoidal EMF, else of a
-    /// quasi-square wave, which is 0 in a third of the turn.
+    /// Peak of the rated current over its root mean square: with a trapezoidal EMF of a quasi-square
+    /// wave, which is 0 in a third of the turn, else of a sine.
     pub fn rated_peak(self) -> f64 {
         match self {
-            Self::Sinusoidal => SQRT_2,
+            Self::Sinusoidal | Self::Harmonics(_) => SQRT_2,
             Self::Trapezoidal { .. } => 1.5_f64.sqrt(),
         }
     }
@@ -80,13 +144,7 @@ impl EmfShape {
     /// Mean torque per ampere of a sinusoidal current's peak over the phase constant: 1.5 times the
     /// fundamental of the phase EMF.
     pub fn sine_factor(self) -> f64 {
-        1.5 * match self {
-            Self::Sinusoidal => 1.0,
-            Self::Trapezoidal { flat_top_deg } => {
-                let ramp = (180.0 - flat_top_deg).to_radians() / 2.0;
-                4.0 / PI * ramp.sin() / ramp
-            }
-        }
+        1.5 * self.fundamental()
     }
 
     /// Root mean square of the phase EMF over its peak: 1/sqrt(2) for a sine, 0.882 for a flat top
@@ -98,6 +156,7 @@ impl EmfShape {
                 // Of the ramps' squares a third is left.
                 (1.0 - 2.0 / 3.0 * (180.0 - flat_top_deg) / 180.0).sqrt()
             }
+            Self::Harmonics(series) => series.rms(),
         }
     }
 
@@ -105,8 +164,10 @@ impl EmfShape {
     /// sine, 1.491 for a flat top of 120 degrees.
     pub fn line_to_line_rms(self) -> f64 {
         const STEPS: u32 = 36_000;
-        if self == Self::Sinusoidal {
-            return 1.5_f64.sqrt();
+        match self {
+            Self::Sinusoidal => return 1.5_f64.sqrt(),
+            Self::Harmonics(series) => return series.line_rms(),
+            Self::Trapezoidal { .. } => {}
         }
         let sum: f64 = (0..STEPS)
             .map(|step| {
@@ -118,13 +179,19 @@ impl EmfShape {
     }
 
     /// Torque per ampere of a current parallel to the EMF over the phase constant, the ampere
-    /// being the phase current where the phase's EMF peaks (theta_e = 90 degrees).
+    /// being the phase current at theta_e = 90 degrees, where the phase's EMF peaks.
     ///
-    /// i = (2/3) k_t/k_phase s/|s|^2 with s the zero-sum shape; at 90 degrees f = (1, -y, -y) with
-    /// y = f(30 degrees), so s_a/|s|^2 = 1.5/(1 + y). 2 for a flat top of at least 120 degrees,
-    /// 1.5 for a sine.
+    /// i = (2/3) k_t/k_phase s/|s|^2 with s the zero-sum shape. At 90 degrees f = (1, -y, -y) with
+    /// y = f(30 degrees) of a trapezoid or a sine, so s_a/|s|^2 = 1.5/(1 + y). 2 for a flat top of at
+    /// least 120 degrees, 1.5 for a sine.
     pub fn proportional_factor(self) -> f64 {
-        1.0 + self.at(PI / 6.0)
+        match self {
+            Self::Sinusoidal | Self::Trapezoidal { .. } => 1.0 + self.at(FRAC_PI_6),
+            Self::Harmonics(_) => {
+                let [of_a, ..] = self.zero_sum(FRAC_PI_2);
+                1.5 * self.squared_length(FRAC_PI_2) / of_a
+            }
+        }
     }
 
     /// Torque per ampere of set-point over the phase constant, for a shape of the current reference.
@@ -147,14 +214,12 @@ impl EmfShape {
     /// 1 for a sine, 1.077 for a flat top of 120 degrees (between two corners).
     pub fn proportional_peak(self) -> f64 {
         const STEPS: u32 = 7200;
+        let factor = self.proportional_factor();
         (0..STEPS)
             .map(|step| {
                 let theta_e = TAU * f64::from(step) / f64::from(STEPS);
-                let f = [0.0, 1.0, 2.0].map(|lag| self.at(theta_e - lag * TAU / 3.0));
-                let mean = (f[0] + f[1] + f[2]) / 3.0;
-                let s = f.map(|value| value - mean);
-                let square = 2.0 / 3.0 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-                2.0 / 3.0 * self.proportional_factor() * s[0].abs() / square
+                let [of_a, ..] = self.zero_sum(theta_e);
+                2.0 / 3.0 * factor * of_a.abs() / self.squared_length(theta_e)
             })
             .fold(0.0, f64::max)
     }
@@ -163,18 +228,31 @@ impl EmfShape {
 #[cfg(test)]
 mod tests {
     use super::{EmfShape, PI, TAU};
+    use crate::spec::Harmonics;
 
-    const SHAPES: [EmfShape; 5] = [
-        EmfShape::Sinusoidal,
-        EmfShape::Trapezoidal {
-            flat_top_deg: 120.0,
-        },
-        EmfShape::Trapezoidal {
-            flat_top_deg: 150.0,
-        },
-        EmfShape::Trapezoidal { flat_top_deg: 80.0 },
-        EmfShape::Trapezoidal { flat_top_deg: 20.0 },
-    ];
+    fn trapezoid(flat_top_deg: f64) -> EmfShape {
+        EmfShape::Trapezoidal { flat_top_deg }
+    }
+
+    fn shapes() -> [EmfShape; 7] {
+        // Sixth parts of a turn differ in their halves where a phase is not 0.
+        let skewed = [
+            (3, 0.15, 0.4),
+            (5, 0.06, 0.7),
+            (7, -0.03, 0.0),
+            (23, 0.01, 1.0),
+        ];
+        [
+            EmfShape::Sinusoidal,
+            trapezoid(120.0),
+            trapezoid(150.0),
+            trapezoid(80.0),
+            trapezoid(20.0),
+            EmfShape::Harmonics(Harmonics::of([])),
+            EmfShape::Harmonics(Harmonics::of(skewed)),
+        ]
+    }
+
     const STEPS: usize = 200_000;
 
     fn near(left: f64, right: f64) -> bool {
@@ -205,7 +283,7 @@ mod tests {
 
     #[test]
     fn factors_agree_with_integration() {
-        for shape in SHAPES {
+        for shape in shapes() {
             let line = |theta: f64| shape.at(theta) - shape.at(theta - TAU / 3.0);
             let peak = angles(0.0, 360.0).map(line).fold(0.0, f64::max);
             assert!(near(peak, shape.line_to_line_peak()), "{shape:?} {peak}");
@@ -218,11 +296,40 @@ mod tests {
     }
 
     #[test]
+    fn integrals_and_currents_follow_the_shape() {
+        for shape in shapes() {
+            let mut sum = 0.0;
+            for theta in angles(0.0, 360.0).step_by(STEPS / 800) {
+                let rise = shape.integral(theta + 1e-5) - shape.integral(theta - 1e-5);
+                assert!((rise / 2e-5 - shape.at(theta)).abs() < 1e-4, "{shape:?}");
+                sum += shape.integral(theta);
+            }
+            assert!(sum.abs() < 0.1, "{shape:?} {sum}");
+            // The current of an ampere of set-point is an ampere where the EMF peaks.
+            let [of_a, ..] = shape.zero_sum(PI / 2.0);
+            let current = 2.0 / 3.0 * shape.proportional_factor() * of_a;
+            assert!(near(current, shape.squared_length(PI / 2.0)), "{shape:?}");
+        }
+        // A series of the fundamental alone is a sine.
+        let (sine, series) = (EmfShape::Sinusoidal, EmfShape::Harmonics(Harmonics::of([])));
+        for factor in [
+            EmfShape::line_to_line_peak,
+            EmfShape::quasi_square_factor,
+            EmfShape::proportional_factor,
+            EmfShape::proportional_peak,
+            EmfShape::phase_rms,
+            EmfShape::rated_peak,
+        ] {
+            assert!((factor(sine) - factor(series)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
     fn means_of_whole_turns_agree_with_integration() {
         let mean = |values: &dyn Fn(f64) -> f64| {
             angles(0.0, 360.0).map(values).sum::<f64>() / STEPS as f64
         };
-        for shape in SHAPES {
+        for shape in shapes() {
             let line = |theta: f64| shape.at(theta) - shape.at(theta - TAU / 3.0);
             let phase_rms = mean(&|theta| shape.at(theta).powi(2)).sqrt();
             assert!(near(phase_rms, shape.phase_rms()), "{shape:?} {phase_rms}");
@@ -231,16 +338,14 @@ mod tests {
             let torque = mean(&|theta| 3.0 * shape.at(theta) * theta.sin());
             assert!(near(torque, shape.sine_factor()), "{shape:?} {torque}");
         }
-        let trapezoid = SHAPES[1];
+        let trapezoid = trapezoid(120.0);
         // Of 120 degrees: between two lines 60 degrees of 2 E and ramps to 1 E and on to 0.
         assert!(near(trapezoid.line_to_line_rms(), (20.0_f64 / 9.0).sqrt()));
     }
 
     #[test]
     fn factors_of_the_two_standard_shapes() {
-        let trapezoid = EmfShape::Trapezoidal {
-            flat_top_deg: 120.0,
-        };
+        let trapezoid = trapezoid(120.0);
         assert!(near(trapezoid.quasi_square_factor(), 2.0));
         assert!(near(trapezoid.proportional_factor(), 2.0));
         assert!(near(

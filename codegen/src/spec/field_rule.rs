@@ -21,11 +21,17 @@ impl FieldRule<'_> {
     }
 
     /// Whether the field takes a list of values in brackets: one of each sensed phase in place of
-    /// one for all, or of each Hall edge.
+    /// one for all, of each Hall edge, or of an EMF shape.
     pub fn takes_each(self) -> bool {
         matches!(
             self.name,
-            "adc_gain" | "adc_offset" | "adc_inverted" | "hall_angles"
+            "adc_gain"
+                | "adc_offset"
+                | "adc_inverted"
+                | "hall_angles"
+                | "emf_amplitudes"
+                | "emf_phases"
+                | "emf_samples"
         )
     }
 

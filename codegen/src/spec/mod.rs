@@ -17,6 +17,7 @@ pub(crate) mod controller;
 mod emf_shape;
 mod field_rule;
 pub(crate) mod field_texts;
+mod harmonics;
 pub(crate) mod health;
 mod load;
 mod macro_syntax;
@@ -44,6 +45,7 @@ pub use controller::{
     LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates, PhccSpec,
     PiPwmSpec, Reference, SpeedLoop, SwitchingTable,
 };
+pub use harmonics::{Harmonics, ORDERS};
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};
 pub use model::{

@@ -4,7 +4,8 @@
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
 use crate::spec::{
-    ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, RATIO_BITS, SensedPhases,
+    ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, Harmonics, RATIO_BITS,
+    SensedPhases,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -123,6 +124,8 @@ pub enum EmfShape {
     },
     /// A sine wave.
     Sinusoidal,
+    /// A Fourier series. An estimate of such an EMF is turned as a sine.
+    Harmonics(Harmonics),
 }
 
 /// Motor data, star equivalent, SI.
@@ -140,7 +143,7 @@ pub struct MotorSpec {
     pub emf_constant: f64,
     /// Shape of the EMF.
     pub emf_shape: EmfShape,
-    /// Rated current, ampere: peak of a sine with a sinusoidal EMF, else of a quasi-square wave.
+    /// Rated current, ampere: peak of a quasi-square wave with a trapezoidal EMF, else of a sine.
     pub rated_current: f64,
     /// Rated torque as given, Nm.
     pub rated_torque: Option<f64>,

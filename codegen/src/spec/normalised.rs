@@ -32,6 +32,11 @@ impl Spec {
                 text.number("flat_top_deg", flat_top_deg);
             }
             EmfShape::Sinusoidal => text.word("emf_shape", "sinusoidal"),
+            EmfShape::Harmonics(series) => {
+                text.word("emf_shape", "harmonics");
+                text.number("emf_sines", series.sines);
+                text.number("emf_cosines", series.cosines);
+            }
         }
         text.number("torque_constant", self.torque_constant());
         text.number("hall_codes", motor.hall_codes);

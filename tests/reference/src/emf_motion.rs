@@ -20,7 +20,7 @@ impl EmfMotion {
     /// The motion of a drive's EMF.
     ///
     /// # Errors
-    /// If a trapezoid's flat top is missing.
+    /// If the shape is inconsistent.
     pub fn new(spec: &Spec) -> Result<Self, Error> {
         let motor = &spec.motor;
         let shape = EmfShape::new(motor)?;
@@ -30,7 +30,7 @@ impl EmfMotion {
         let h = (area(FRAC_PI_2) - area(FRAC_PI_6)) * (3.0 / PI);
         let turn_per_speed = f64::from(motor.pole_pairs) * spec.inverter.t_s;
         let speed_per_line = 1.0 / (h * motor.emf_constant);
-        let turns = shape == EmfShape::Sinusoidal;
+        let turns = shape.turns();
         let per_turn = if turns {
             1.0 / 3f64.sqrt()
         } else {

@@ -20,13 +20,21 @@ pub enum EmfShape {
     },
     /// A sine.
     Sinusoidal,
+    /// A Fourier series of orders 1, 3, ... 23: per order the amplitude of its sine, and of its cosine.
+    Harmonics {
+        /// Of sin(n theta).
+        sines: [f64; 12],
+        /// Of cos(n theta).
+        cosines: [f64; 12],
+    },
 }
 
 impl EmfShape {
     /// The motor's shape.
     ///
     /// # Errors
-    /// When a trapezoid's flat top is missing or not within 0 to 180 degrees.
+    /// When a trapezoid's flat top is missing or not within 0 to 180 degrees, or coefficients of a
+    /// series are missing or its greatest value is not 1.
     pub fn new(motor: &Motor) -> Result<Self, Error> {
         match (motor.emf_shape, motor.flat_top_deg) {
             (EmfShapeKind::Sinusoidal, _) => Ok(Self::Sinusoidal),
@@ -44,7 +52,34 @@ impl EmfShape {
                 value: flat.to_string(),
                 expected: "expected 0 to less than 180 degrees",
             }),
+            (EmfShapeKind::Harmonics, _) => Self::series(motor),
         }
+    }
+
+    fn series(motor: &Motor) -> Result<Self, Error> {
+        let reason = "the EMF is a series of harmonics";
+        let coefficients =
+            |field, list: Option<[f64; 12]>| list.ok_or(Error::Missing { field, reason });
+        let shape = Self::Harmonics {
+            sines: coefficients("motor.emf_sines", motor.emf_sines)?,
+            cosines: coefficients("motor.emf_cosines", motor.emf_cosines)?,
+        };
+        let angles = (0..720).map(|step| f64::from(step) * PI / 720.0);
+        let peak = angles.fold(0.0, |most: f64, theta| most.max(shape.unit(theta).abs()));
+        if (peak - 1.0).abs() < 1e-3 {
+            Ok(shape)
+        } else {
+            Err(Error::Field {
+                field: "motor.emf_sines",
+                value: peak.to_string(),
+                expected: "expected a series with a greatest value of 1",
+            })
+        }
+    }
+
+    /// Whether an estimate of such an EMF is turned from period to period (else its off phase ramps).
+    pub fn turns(self) -> bool {
+        !matches!(self, Self::Trapezoidal { .. })
     }
 
     /// Unit EMF of phase a at `theta` radians.
@@ -56,6 +91,9 @@ impl EmfShape {
                 let x = theta.abs();
                 ((PI - x).min(x) / ramp).min(1.0).copysign(theta)
             }
+            Self::Harmonics { sines, cosines } => orders(sines, cosines, |n, s, c| {
+                s * (n * theta).sin() + c * (n * theta).cos()
+            }),
         }
     }
 
@@ -63,6 +101,9 @@ impl EmfShape {
     pub fn integral(self, theta: f64) -> f64 {
         let x = wrap_pi(theta).abs();
         match self {
+            Self::Harmonics { sines, cosines } => orders(sines, cosines, |n, s, c| {
+                (c * (n * theta).sin() - s * (n * theta).cos()) / n
+            }),
             Self::Sinusoidal => -x.cos(),
             // Odd about a quarter turn.
             Self::Trapezoidal { .. } if x > FRAC_PI_2 => -self.integral(PI - x),
@@ -91,6 +132,15 @@ impl EmfShape {
     }
 }
 
+/// The sum over the odd orders of a term of the order and its coefficients.
+fn orders(sines: [f64; 12], cosines: [f64; 12], term: impl Fn(f64, f64, f64) -> f64) -> f64 {
+    let coefficients = sines.into_iter().zip(cosines);
+    let terms = (0..).zip(coefficients);
+    terms
+        .map(|(k, (s, c))| term(f64::from(2 * k + 1), s, c))
+        .sum()
+}
+
 /// `theta` within half a turn of zero.
 fn wrap_pi(theta: f64) -> f64 {
     theta - TAU * (theta / TAU).round()
@@ -100,7 +150,13 @@ fn wrap_pi(theta: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const SHAPES: [EmfShape; 4] = [
+    const SHAPES: [EmfShape; 5] = [
+        EmfShape::Harmonics {
+            sines: [
+                0.9, 0.1, 0.05, -0.02, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.01,
+            ],
+            cosines: [0.0, 0.02, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        },
         EmfShape::Sinusoidal,
         EmfShape::Trapezoidal { ramp: PI / 6.0 },
         EmfShape::Trapezoidal { ramp: PI / 4.0 },

@@ -46,6 +46,10 @@ pub struct Motor {
     pub emf_shape: EmfShapeKind,
     /// Width of the trapezoid's flat top, electrical degrees. Trapezoidal only.
     pub flat_top_deg: Option<f64>,
+    /// Coefficients of sin(n theta), n = 1, 3, ... 23, of a Fourier series.
+    pub emf_sines: Option<[f64; 12]>,
+    /// Coefficients of cos(n theta).
+    pub emf_cosines: Option<[f64; 12]>,
     /// Torque per ampere of set-point, Nm/A.
     pub torque_constant: f64,
     /// Hall codes of sectors 1 to 6, Ha in bit 2.
@@ -92,6 +96,8 @@ pub enum EmfShapeKind {
     Trapezoidal,
     /// A sine.
     Sinusoidal,
+    /// A Fourier series.
+    Harmonics,
 }
 
 /// Inverter, sampling and supervision.

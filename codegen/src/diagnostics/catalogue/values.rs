@@ -311,6 +311,11 @@ pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
     )
 }
 
+/// Data of an EMF shape that cannot be; `why` is a clause with a remedy.
+pub fn emf_shape(at: &Location, field: &str, why: &str) -> Diagnostic {
+    Diagnostic::new(Code::EmfShape, at, format!("`{field}`: {why}"))
+}
+
 /// Angles of Hall edges far from their places; `why` is a clause.
 pub fn hall_angles(at: &Location, given: &str, why: &str, farthest: f64) -> Diagnostic {
     Diagnostic::new(

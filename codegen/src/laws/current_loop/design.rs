@@ -2,7 +2,6 @@
 
 use super::emf::OBSERVER_GAIN;
 use crate::design::DiscretePlant;
-use crate::design::emf::squared_length;
 use crate::scaling::Scaled;
 use crate::spec::{EmfShape, LoopOptions, Spec};
 use std::f64::consts::{FRAC_PI_6, PI};
@@ -46,7 +45,7 @@ pub struct LoopDesign {
 fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
     let growth = 1.0 / (1.0 - filter);
     let turn = match shape {
-        EmfShape::Sinusoidal => (1.6 * (growth - 1.0)).powf(0.25),
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => (1.6 * (growth - 1.0)).powf(0.25),
         EmfShape::Trapezoidal { .. } => ((growth.powi(2) - 1.0) / 2.0).sqrt(),
     };
     turn.min(0.5)
@@ -55,11 +54,7 @@ fn greatest_turn(shape: EmfShape, filter: f64) -> f64 {
 /// Greatest length of the proportional current per ampere of set-point.
 fn longest_shape(spec: &Spec) -> f64 {
     let motor = &spec.motor;
-    let angles = (0..60).map(|degree| f64::from(degree).to_radians());
-    let least = angles
-        .map(|theta| squared_length(motor.emf_shape, theta))
-        .fold(f64::INFINITY, f64::min);
-    2.0 / 3.0 * spec.torque_constant() / motor.emf_constant / least.sqrt()
+    2.0 / 3.0 * spec.torque_constant() / motor.emf_constant / motor.emf_shape.least_length()
 }
 
 impl LoopDesign {
@@ -98,7 +93,7 @@ impl LoopDesign {
             emf_error_limit: (inverter.greatest_bus() / volt / 2.0).log2().ceil().exp2() * volt,
             observer_gain: OBSERVER_GAIN * longest_shape(spec).powi(2),
             slope: match shape {
-                EmfShape::Sinusoidal => electrical / (3f64.sqrt() * line),
+                EmfShape::Sinusoidal | EmfShape::Harmonics(_) => electrical / (3f64.sqrt() * line),
                 EmfShape::Trapezoidal { .. } => {
                     let turn = electrical / (shape.quasi_square_factor() * line);
                     2.0 / PI * shape.at(FRAC_PI_6) * turn

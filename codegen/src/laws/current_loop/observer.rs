@@ -36,7 +36,7 @@ impl<'b> CurrentLoop<'_, 'b> {
 
     fn slope_exponent(&self, range: LineRange) -> i32 {
         let factors = match self.l.spec.motor.emf_shape {
-            EmfShape::Sinusoidal => 1,
+            EmfShape::Sinusoidal | EmfShape::Harmonics(_) => 1,
             EmfShape::Trapezoidal { .. } => 2,
         };
         self.options.word as i32 - factors * range.shift
@@ -54,7 +54,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let upper = |a: i64, b: i64| ((i128::from(a) * i128::from(b)) >> word) as i64 + 1;
         let moved = |factor: i64| product_bound(self.slope_value(range), word, factor);
         match self.l.spec.motor.emf_shape {
-            EmfShape::Sinusoidal => {
+            EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
                 let turn = moved(factor);
                 let across = upper(turn, 3 * e);
                 across + upper(turn, 3 * across) / 2 + 1
@@ -66,7 +66,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     fn k_slope(&self, range: LineRange) -> Coefficient {
         let exponent = self.slope_exponent(range);
         let [doc, unit] = match self.l.spec.motor.emf_shape {
-            EmfShape::Sinusoidal => [
+            EmfShape::Sinusoidal | EmfShape::Harmonics(_) => [
                 "Turn of the EMF in one period over sqrt(3), per line EMF.",
                 "upper words per shifted line",
             ],
@@ -89,7 +89,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     pub(super) fn move_emf(&self, sector: Expr<'b>, e: Phases<'b>) -> (Phases<'b>, Phases<'b>) {
         let (range, shape) = (self.line_range(), self.l.spec.motor.emf_shape);
         let doc = match shape {
-            EmfShape::Sinusoidal => {
+            EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
                 "Advances the estimate by a period or more: a sinusoidal EMF turns, e + w e_across - w^2/2 e."
             }
             EmfShape::Trapezoidal { .. } => {
@@ -112,7 +112,9 @@ impl<'b> CurrentLoop<'_, 'b> {
             };
         }
         let [once, twice] = match shape {
-            EmfShape::Sinusoidal => self.turning(k_slope, e_line_factor, e),
+            EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
+                self.turning(k_slope, e_line_factor, e)
+            }
             EmfShape::Trapezoidal { .. } => [self.ramping(k_slope, e_line_factor, weights); 2],
         };
         if self.options.delay == 0 {
@@ -123,7 +125,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             let e_now = e + once;
         }
         let before = match shape {
-            EmfShape::Sinusoidal => e,
+            EmfShape::Sinusoidal | EmfShape::Harmonics(_) => e,
             EmfShape::Trapezoidal { .. } => e_now,
         };
         ((before + twice).named("e"), e_now)

@@ -1,6 +1,5 @@
 //! The switching table, derived from the geometry of the vectors (semantics, last section).
 
-use crate::design::emf::zero_sum_shape;
 use crate::design::vectors::{OFF_PHASE, SECTOR_CURRENT, clarke, leg_vector};
 use crate::laws::whole_vectors::vector_legs;
 use crate::spec::{EmfShape, PhccCandidates, PhccSpec, SwitchingTable};
@@ -91,15 +90,14 @@ fn derive(candidates: PhccCandidates, shape: EmfShape, design: &Design) -> Rows 
     std::array::from_fn(|k| {
         let start = (60.0 * k as f64 - 30.0).to_radians();
         let centre = start + TAU / 12.0;
-        let phases =
-            |theta: f64| [0.0, 1.0, 2.0].map(|x| zero_sum_shape(shape, theta - x * TAU / 3.0));
-        let line: f64 = phases(centre)
+        let line: f64 = shape
+            .zero_sum(centre)
             .iter()
             .zip(SECTOR_CURRENT[k])
             .map(|(f, sign)| f * f64::from(sign))
             .sum();
         let three_phase = |theta: f64, (share, weight): (f64, f64), demand| {
-            let [a, b, c] = phases(theta);
+            let [a, b, c] = shape.zero_sum(theta);
             nearest(clarke(a, b, c) * (share / line) + weight * direction(demand))
         };
         [0, 1].map(|commutating| {

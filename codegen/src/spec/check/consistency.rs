@@ -130,7 +130,7 @@ fn claims<'a>(
     if let (Some(torque), Some(current)) = (&motor.rated_torque, &motor.rated_current) {
         let mut factors = vec![block];
         // A sinusoidal current of the same peak, too.
-        factors.extend((shape == EmfShape::Sinusoidal).then_some(sine));
+        factors.extend((!matches!(shape, EmfShape::Trapezoidal { .. })).then_some(sine));
         let amperes = current.si;
         claims.push(Claim {
             code: Code::TorqueContradiction,
@@ -197,7 +197,7 @@ fn others<'a>(
     };
     let (other_shape, word) = match shape {
         EmfShape::Trapezoidal { .. } => (EmfShape::Sinusoidal, "sinusoidal"),
-        EmfShape::Sinusoidal => {
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
             let flat_top_deg = 120.0;
             (EmfShape::Trapezoidal { flat_top_deg }, "trapezoidal")
         }

@@ -7,6 +7,7 @@ mod consistency;
 mod controller;
 mod currents;
 mod emf;
+mod emf_shape;
 mod finish;
 mod inverter;
 mod motor;

@@ -1,6 +1,7 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
 use super::emf::{self, Emf, Winding};
+use super::emf_shape;
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
 use crate::spec::model::extreme_sectors;
@@ -46,7 +47,8 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
     let winding = read_winding(reader, errors);
     let resistance = read_winding_value(reader, errors, "resistance", winding);
     let inductance = read_winding_value(reader, errors, "inductance", winding);
-    let emf_shape = read_shape(reader, errors);
+    let stated = emf_shape::read(reader, errors);
+    let emf_shape = stated.map(|stated| stated.shape);
     let emf = emf::read(reader, winding, emf_shape, errors);
     let emf_constant = match (emf.first(), emf_shape, pole_pairs) {
         (Some(stated), Some(shape), Some(pole_pairs)) => {
@@ -54,6 +56,9 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
         }
         _ => None,
     };
+    if let (Some(stated), Some(constant)) = (stated, emf_constant) {
+        emf_shape::check_amplitude(reader, stated, constant, errors);
+    }
     Motor {
         description: reader.text("description").unwrap_or_default().to_owned(),
         pole_pairs,
@@ -201,29 +206,6 @@ fn read_nominal_voltage<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Opti
         ));
     }
     Some(given)
-}
-
-fn read_shape(reader: &Reader, errors: &mut Collector) -> Option<EmfShape> {
-    let flat_top = reader.plain_quantity(errors, "flat_top");
-    let trapezoidal = reader.word(
-        errors,
-        "emf_shape",
-        &[("trapezoidal", true), ("sinusoidal", false)],
-    )?;
-    if trapezoidal {
-        return Some(EmfShape::Trapezoidal {
-            flat_top_deg: flat_top.map_or(120.0, |given| given.si),
-        });
-    }
-    if let Some(given) = flat_top {
-        errors.push(catalogue::needless_field(
-            &given.part.location,
-            "flat_top",
-            &given.part.given,
-            "emf_shape: trapezoidal",
-        ));
-    }
-    Some(EmfShape::Sinusoidal)
 }
 
 /// The rated current is the peak of the wave that belongs to the EMF's shape.

@@ -3,6 +3,7 @@
 mod boards;
 mod data_sheets;
 mod diagnostics;
+mod emf_shapes;
 mod explanations;
 mod front_ends;
 mod inverter;

@@ -6,7 +6,7 @@ use crate::commands::{
     prove, replay, report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
-use hexagen_codegen::spec::{KINDS, option_help};
+use hexagen_codegen::spec::{EmfShape, KINDS, option_help};
 use hexagen_lab::LabError;
 use hexagen_lab::engine::{Model, PerSensor, PlantOptions, Prepared, SelectedMotor, SetPoint};
 use hexagen_lab::plant::{PlantError, PlantParams};
@@ -204,6 +204,11 @@ pub struct PlantArguments {
     /// True over stated EMF constant
     #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_kb: Option<f64>,
+    /// True shape of the EMF, at the same peak between two terminals: `sinusoidal`,
+    /// `trapezoidal:100` (flat top in degrees), or `harmonics:5=4,7=-2` (order and percent of the
+    /// fundamental)
+    #[arg(long, value_name = "SHAPE", value_parser = quantity::emf_shape)]
+    pub emf_shape: Option<EmfShape>,
     /// Placement error of the Hall sensors in electrical degrees: one angle for all three, or
     /// three for Ha, Hb and Hc; positive is late in forward rotation
     #[arg(long, value_name = "ANGLE", value_parser = quantity::hall_error, allow_hyphen_values = true)]
@@ -235,6 +240,7 @@ impl PlantArguments {
             scale_r: self.scale_r,
             scale_l: self.scale_l,
             scale_kb: self.scale_kb,
+            emf_shape: self.emf_shape,
             hall_error: self.hall_error,
             inertia: self.inertia,
             load: self.load,

@@ -1,6 +1,7 @@
 //! Quantities on the command line: a number, with or without a unit.
 
 use hexagen_codegen::spec::units::{Dimension, Unit};
+use hexagen_codegen::spec::{EmfShape, Harmonics};
 use hexagen_lab::engine::PerSensor;
 
 /// A number with an optional unit of one dimension; without one it is in SI units (degrees for
@@ -136,6 +137,47 @@ pub(super) fn radians(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A shape of the EMF: a word, and behind a colon its data.
+pub(super) fn emf_shape(text: &str) -> Result<EmfShape, String> {
+    let (word, data) = text.split_once(':').unwrap_or((text, ""));
+    match (word.trim(), data.trim()) {
+        ("sinusoidal", "") => Ok(EmfShape::Sinusoidal),
+        ("trapezoidal", flat_top) => {
+            let flat_top = if flat_top.is_empty() {
+                120.0
+            } else {
+                quantity(flat_top, Dimension::Angle)?
+            };
+            let flat_top_deg = within(flat_top, 1.0, 179.0, " degrees of flat top")?;
+            Ok(EmfShape::Trapezoidal { flat_top_deg })
+        }
+        ("harmonics", list) if !list.is_empty() => {
+            let harmonics = list.split(',').map(harmonic);
+            let series = Harmonics::of(harmonics.collect::<Result<Vec<_>, _>>()?);
+            Ok(EmfShape::Harmonics(series))
+        }
+        _ => Err(
+            "give `sinusoidal`, `trapezoidal:100` or `harmonics:5=4,7=-2`: a flat top in degrees, or orders and percents of the fundamental"
+                .to_owned(),
+        ),
+    }
+}
+
+/// `5=4`: order, share of the fundamental and phase of a harmonic.
+fn harmonic(text: &str) -> Result<(u32, f64, f64), String> {
+    let wrong =
+        || format!("`{text}` is not an odd order from 3 to 23 and a percentage, as in `5=4`");
+    let (order, share) = text.split_once('=').ok_or_else(wrong)?;
+    let order: u32 = order.trim().parse().map_err(|_| wrong())?;
+    let percent = split(share.trim())
+        .filter(|(percent, unit)| percent.abs() <= 100.0 && matches!(*unit, "" | "%"));
+    let is_odd = order % 2 == 1 && (3..=23).contains(&order);
+    match percent {
+        Some((percent, _)) if is_odd => Ok((order, percent / 100.0, 0.0)),
+        _ => Err(wrong()),
+    }
+}
+
 /// Degrees of one sensor or of three, `5deg` or `5deg,-3deg,0`.
 pub(super) fn hall_error(text: &str) -> Result<[f64; 3], String> {
     let list = text
@@ -169,6 +211,29 @@ mod tests {
         assert_eq!(adc_offset("0.2A,-1"), Ok(PerSensor(vec![0.2, -1.0])));
         assert_eq!(adc_scale("1.1,0.9,1.2"), Ok(PerSensor(vec![1.1, 0.9, 1.2])));
         assert_eq!(counts("1.5 counts"), Ok(1.5));
+    }
+
+    #[test]
+    fn shapes_of_the_emf() {
+        assert_eq!(emf_shape("sinusoidal"), Ok(EmfShape::Sinusoidal));
+        let trapezoid = |flat_top_deg| Ok(EmfShape::Trapezoidal { flat_top_deg });
+        assert_eq!(emf_shape("trapezoidal"), trapezoid(120.0));
+        assert_eq!(emf_shape("trapezoidal:95deg"), trapezoid(95.0));
+        let series = Harmonics::of([(5, 0.04, 0.0), (7, -0.02, 0.0)]);
+        let stated = Ok(EmfShape::Harmonics(series));
+        assert_eq!(emf_shape("harmonics:5=4,7=-2%"), stated);
+        for wrong in [
+            "sinusoidal:3",
+            "trapezoidal:200",
+            "harmonics",
+            "harmonics:5",
+            "harmonics:4=3",
+            "harmonics:25=1",
+            "harmonics:5=101",
+            "square",
+        ] {
+            assert!(emf_shape(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

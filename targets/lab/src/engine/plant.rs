@@ -15,10 +15,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         resistance: [motor.resistance; 3],
         inductance: [motor.inductance; 3],
         k_phase: [motor.emf_constant; 3],
-        shape: match motor.emf_shape {
-            spec::EmfShape::Trapezoidal { flat_top_deg } => EmfShape::Trapezoidal { flat_top_deg },
-            spec::EmfShape::Sinusoidal => EmfShape::Sinusoidal,
-        },
+        shape: shape_of(motor.emf_shape),
         v_bus: inverter.v_bus,
         t_s: inverter.t_s,
         pwm_per_control: inverter.pwm_per_control as u16,
@@ -48,6 +45,18 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
         hall_error_deg: [0.0; 3],
         mechanics: None,
         wiring: Wiring::default(),
+    }
+}
+
+/// The plant's shape of a specified one.
+pub(super) fn shape_of(shape: spec::EmfShape) -> EmfShape {
+    match shape {
+        spec::EmfShape::Trapezoidal { flat_top_deg } => EmfShape::Trapezoidal { flat_top_deg },
+        spec::EmfShape::Sinusoidal => EmfShape::Sinusoidal,
+        spec::EmfShape::Harmonics(series) => EmfShape::Harmonics {
+            sines: series.sines,
+            cosines: series.cosines,
+        },
     }
 }
 

@@ -1,12 +1,13 @@
 //! Motors with their plants: simulation may deviate from the motor's file.
 
+use super::plant::shape_of;
 use super::{MotorSource, Prepared, SetPoint, library, plant_of, prepare_ast, run_of};
 use crate::LabError;
 use crate::closed_loop::RunOptions;
 use crate::plant::{Mechanics, PlantError, PlantParams};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::diagnostics::catalogue::unreadable_board_file;
-use hexagen_codegen::spec::{Board, SpecAst, motor_text, parse_board, parse_toml};
+use hexagen_codegen::spec::{Board, EmfShape, SpecAst, motor_text, parse_board, parse_toml};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -59,6 +60,8 @@ pub struct PlantOptions {
     pub scale_l: Option<f64>,
     /// True over stated EMF constant.
     pub scale_kb: Option<f64>,
+    /// True shape of the EMF in place of the stated one, at the same peak between two terminals.
+    pub emf_shape: Option<EmfShape>,
     /// Placement errors of the Hall sensors in electrical degrees; positive is late in forward
     /// rotation.
     pub hall_error: Option<[f64; 3]>,
@@ -222,6 +225,12 @@ impl PlantOptions {
             self.scale_l.unwrap_or(1.0),
             self.scale_kb.unwrap_or(1.0),
         );
+        if let Some(shape) = self.emf_shape {
+            let stated = drive.spec.motor.emf_shape.line_to_line_peak();
+            let by = stated / shape.line_to_line_peak();
+            plant.k_phase = plant.k_phase.map(|constant| constant * by);
+            plant.shape = shape_of(shape);
+        }
         plant.dead_time = self.dead_time.unwrap_or(plant.dead_time);
         plant.v_bus = self.v_bus.unwrap_or(plant.v_bus);
         let count = plant.adc.len();

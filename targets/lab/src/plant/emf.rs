@@ -29,11 +29,19 @@ pub(super) fn value(shape: EmfShape, angle: f64) -> f64 {
             };
             (folded / half_ramp(flat_top_deg)).clamp(-1.0, 1.0)
         }
+        EmfShape::Harmonics { sines, cosines } => {
+            let mut sum = 0.0;
+            for (place, (s, c)) in sines.into_iter().zip(cosines).enumerate() {
+                let (sin, cos) = ((2 * place + 1) as f64 * angle).sin_cos();
+                sum += s * sin + c * cos;
+            }
+            sum
+        }
     }
 }
 
 /// Electrical angle from `theta_e` to the next corner of any phase in the direction of
-/// `omega_e`; infinite for a sine or at standstill.
+/// `omega_e`; infinite for smooth shapes or at standstill.
 pub(super) fn angle_to_corner(shape: EmfShape, theta_e: f64, omega_e: f64) -> f64 {
     let EmfShape::Trapezoidal { flat_top_deg } = shape else {
         return f64::INFINITY;
@@ -69,12 +77,21 @@ pub(super) fn series(
     debug_assert!(terms <= TERMS);
     match shape {
         EmfShape::Sinusoidal => {
-            let (sin, cos) = phase_angle.sin_cos();
-            let cycle = [sin, cos, -sin, -cos];
-            let mut scale = k;
-            for (n, coefficient) in out[..terms].iter_mut().enumerate() {
-                *coefficient = scale * cycle[n % 4];
-                scale *= omega_e / (n + 1) as f64;
+            out[..terms].fill(0.0);
+            add_wave([k, 0.0], phase_angle, omega_e, &mut out[..terms]);
+            terms
+        }
+        EmfShape::Harmonics { sines, cosines } => {
+            out[..terms].fill(0.0);
+            for (place, (s, c)) in sines.into_iter().zip(cosines).enumerate() {
+                let order = (2 * place + 1) as f64;
+                let wave = [k * s, k * c];
+                add_wave(
+                    wave,
+                    order * phase_angle,
+                    order * omega_e,
+                    &mut out[..terms],
+                );
             }
             terms
         }
@@ -101,11 +118,32 @@ pub(super) fn series(
     }
 }
 
+/// Adds the Taylor coefficients in time of s sin + c cos at an angle that grows by `omega`.
+fn add_wave([s, c]: [f64; 2], angle: f64, omega: f64, out: &mut [f64]) {
+    if s == 0.0 && c == 0.0 {
+        return;
+    }
+    let (sin, cos) = angle.sin_cos();
+    let (value, slope) = (s * sin + c * cos, s * cos - c * sin);
+    let cycle = [value, slope, -value, -slope];
+    let mut scale = 1.0;
+    for (n, coefficient) in out.iter_mut().enumerate() {
+        *coefficient += scale * cycle[n % 4];
+        scale *= omega / (n + 1) as f64;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const SHAPES: [EmfShape; 4] = [
+    const SHAPES: [EmfShape; 5] = [
+        EmfShape::Harmonics {
+            sines: [
+                1.1, 0.1, 0.05, -0.02, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+            ],
+            cosines: [0.0, 0.02, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        },
         EmfShape::Trapezoidal {
             flat_top_deg: 120.0,
         },
@@ -118,7 +156,7 @@ mod tests {
 
     #[test]
     fn trapezoid_has_the_published_corners() {
-        let shape = SHAPES[0];
+        let shape = SHAPES[1];
         for (degrees, expected) in [
             (0.0, 0.0),
             (15.0, 0.5),
@@ -141,7 +179,8 @@ mod tests {
             for omega_e in [800.0, -800.0] {
                 for step in 0..3600 {
                     let theta = step as f64 * 0.1_f64.to_radians();
-                    let angle = angle_to_corner(shape, theta, omega_e).min(0.2);
+                    let ahead = 0.2 / shape.highest_order().max(1) as f64;
+                    let angle = angle_to_corner(shape, theta, omega_e).min(ahead);
                     for lag in LAG {
                         let mut out = [0.0; TERMS];
                         series(shape, 2.0, theta - lag, omega_e, TERMS, &mut out);

@@ -5,7 +5,7 @@ use super::hall::Sensors;
 use super::network::{Network, balance, set_shape};
 use super::segment::{Segment, Series, TERMS, integral};
 use super::short::{Detour, tied};
-use super::{EmfShape, Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
+use super::{Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
 use hexagen::{Legs, Sample};
 
 /// Minimum steps per period with a free speed, which is constant within a step.
@@ -389,11 +389,8 @@ impl Plant {
             omega_m = 0.5 * (omega_m + speed_after(mechanics, omega_m, torque * h, h));
         }
         let omega_e = omega_m * f64::from(params.pole_pairs);
-        let sine_speed = if params.shape == EmfShape::Sinusoidal {
-            omega_e
-        } else {
-            0.0
-        };
+        // Speed of the fastest wave of the EMF.
+        let sine_speed = omega_e * params.shape.highest_order() as f64;
         h = h.min(self.network.longest_step(sine_speed));
         if omega_e != 0.0 {
             h = h.min(emf::angle_to_corner(params.shape, self.theta_e, omega_e) / omega_e.abs());

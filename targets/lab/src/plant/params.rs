@@ -3,6 +3,7 @@
 use super::Short;
 use super::hall::EVEN_EDGES_DEG;
 use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::spec::ORDERS;
 use serde::{Deserialize, Serialize};
 
 /// Hall codes `HaHbHc` of sectors S1 to S6 in the wiring of [`hexagen::conventions`].
@@ -18,6 +19,30 @@ pub enum EmfShape {
     },
     /// A sine.
     Sinusoidal,
+    /// A Fourier series of orders 1, 3, ... 23.
+    Harmonics {
+        /// Coefficients of sin(n theta).
+        sines: [f64; ORDERS],
+        /// Coefficients of cos(n theta).
+        cosines: [f64; ORDERS],
+    },
+}
+
+impl EmfShape {
+    /// The highest order of its series; 0 of a trapezoid, which is linear between its corners.
+    pub fn highest_order(&self) -> usize {
+        match self {
+            Self::Trapezoidal { .. } => 0,
+            Self::Sinusoidal => 1,
+            Self::Harmonics { sines, cosines } => {
+                let is_there = |place: &usize| sines[*place] != 0.0 || cosines[*place] != 0.0;
+                (0..ORDERS)
+                    .rev()
+                    .find(is_there)
+                    .map_or(1, |place| 2 * place + 1)
+            }
+        }
+    }
 }
 
 /// One current channel: `count = round(i / amperes_per_count + offset + noise)`, limited to the

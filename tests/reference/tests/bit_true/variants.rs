@@ -315,7 +315,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     // A turn takes a line EMF of twice the bus at most, as a factor of 31 bits or a little more
     // than 30; a ramp takes two.
     let slope = match motor.emf_shape {
-        EmfShapeKind::Sinusoidal => turn * 4.0 * bus,
+        EmfShapeKind::Sinusoidal | EmfShapeKind::Harmonics => turn * 4.0 * bus,
         EmfShapeKind::Trapezoidal => {
             turn * w / scale * 4.0 * (bus / w * scale).powi(2) / 2f64.powi(30)
         }

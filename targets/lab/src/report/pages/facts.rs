@@ -74,6 +74,10 @@ fn motor(data: &Results) -> Vec<(&'static str, String)> {
             format!("trapezoidal, {}\u{b0} flat top", number(flat_top_deg, 0))
         }
         EmfShape::Sinusoidal => "sinusoidal".to_owned(),
+        EmfShape::Harmonics(series) => format!(
+            "of harmonics, fundamental {}\u{a0}% of the peak",
+            number(100.0 * series.fundamental(), 1)
+        ),
     };
     let mut rows = vec![
         ("Pole pairs", motor.pole_pairs.to_string()),
@@ -139,20 +143,11 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
     board.chain(rows).collect()
 }
 
-/// Peak line-to-line EMF over peak phase EMF: twice the shape at 60 degrees, where two phases
-/// contribute equally.
-fn line_factor(shape: EmfShape) -> f64 {
-    2.0 * match shape {
-        EmfShape::Trapezoidal { flat_top_deg } => (60.0 / (90.0 - flat_top_deg / 2.0)).min(1.0),
-        EmfShape::Sinusoidal => 60.0_f64.to_radians().sin(),
-    }
-}
-
 fn derived(data: &Results) -> Vec<(&'static str, String)> {
     let (motor, inverter) = (&data.motor, &data.inverter);
     let pole_pairs = f64::from(motor.pole_pairs);
     let per_volt = inverter.t_s / motor.inductance;
-    let emf = line_factor(motor.emf_shape) * motor.emf_constant * motor.rated_speed;
+    let emf = motor.emf_shape.line_to_line_peak() * motor.emf_constant * motor.rated_speed;
     let degrees = motor.rated_turn(inverter.t_s);
     vec![
         ("Current for the demand", quantity(data.current, "A")),
@@ -185,19 +180,4 @@ fn derived(data: &Results) -> Vec<(&'static str, String)> {
             format!("{}\u{b0} el.", number(degrees, 2)),
         ),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::line_factor;
-    use hexagen_codegen::spec::EmfShape;
-
-    #[test]
-    fn line_emf_follows_the_shape() {
-        let trapezoid = |flat_top_deg| line_factor(EmfShape::Trapezoidal { flat_top_deg });
-        assert_eq!((trapezoid(120.0), trapezoid(60.0)), (2.0, 2.0));
-        // A triangle of peak 1 at 90 degrees is 2/3 at 60.
-        assert!((trapezoid(0.0) - 4.0 / 3.0).abs() < 1e-12);
-        assert!((line_factor(EmfShape::Sinusoidal) - 3.0_f64.sqrt()).abs() < 1e-12);
-    }
 }
