@@ -34,7 +34,7 @@ pub struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Designs, verifies and simulates the controllers of a motor, prints a table and writes a page
+    /// Designs, verifies and simulates the controllers of a motor, prints a verdict and writes a page
     Report(report::Options),
     /// Prints a controller's code, intermediate form or data sheet
     Generate(generate::Options),
@@ -46,7 +46,7 @@ pub enum Command {
     Faults(faults::Options),
     /// Prints every word of a drive from a log of its samples and set-points
     Replay(replay::Options),
-    /// Finds the Hall sensors' codes and places from a log of the shorted motor turned by hand
+    /// Finds the Hall sensors' codes and edge angles from a log of the shorted motor turned by hand
     Halls(halls::Options),
     /// Compares generated code with the bit-true reference, bit for bit
     Verify(verify::Options),
@@ -164,8 +164,7 @@ impl Selection {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Plant")]
 pub struct PlantArguments {
-    /// Board, a name of the library or a file, of plant and controller alike: the specification
-    /// changes [default: the motor file's]
+    /// Board of controller and plant, a name of the library or a file [default: the motor file's]
     #[arg(long, value_name = "BOARD")]
     pub board: Option<String>,
     /// Dead time of the inverter's legs [default: the motor file's]
@@ -181,8 +180,8 @@ pub struct PlantArguments {
     /// phases, or one of each
     #[arg(long, value_name = "CURRENT", value_parser = quantity::adc_offset, allow_hyphen_values = true)]
     pub adc_offset: Option<PerSensor>,
-    /// True over stated current per ADC count, unknown to the controller: one factor for all
-    /// sensed phases, or one of each
+    /// True current per ADC count as a multiple of the stated one, unknown to the controller: one
+    /// factor for all sensed phases, or one of each
     #[arg(long, value_name = "X", value_parser = quantity::adc_scale, allow_hyphen_values = true)]
     pub scale_adc: Option<PerSensor>,
     /// Gaussian noise of the current ADCs in counts rms, the same in every run
@@ -195,13 +194,13 @@ pub struct PlantArguments {
     /// True bus voltage; the controller uses the motor file's or the measured one
     #[arg(long, value_name = "VOLTAGE", value_parser = quantity::voltage, allow_hyphen_values = true)]
     pub v_bus: Option<f64>,
-    /// True over stated resistance
+    /// True resistance as a multiple of the stated one
     #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_r: Option<f64>,
-    /// True over stated inductance
+    /// True inductance as a multiple of the stated one
     #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_l: Option<f64>,
-    /// True over stated EMF constant
+    /// True EMF constant as a multiple of the stated one
     #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_kb: Option<f64>,
     /// True shape of the EMF, at the same peak between two terminals: `sinusoidal`,
