@@ -1,15 +1,15 @@
-//! The library of boards, and which motors of the library fit each.
+//! Boards, and which motors of the library fit each.
 
 use crate::engine::{PlantOptions, SelectedMotor};
 use crate::{LabError, Progress};
-use hexagen_codegen::spec::{BOARDS, parse_board};
+use hexagen_codegen::spec::BOARDS;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// One board of the library.
+/// A board.
 #[derive(Clone, Debug, Serialize)]
-pub struct LibraryBoard {
-    /// Name.
+pub struct BoardWithMotors {
+    /// Name or file.
     pub name: String,
     /// One line of description.
     pub description: Option<String>,
@@ -34,28 +34,32 @@ pub struct Fit {
 ///
 /// # Errors
 /// When a file of the library cannot be read.
-pub fn library_of_boards(progress: &dyn Progress) -> Result<Vec<LibraryBoard>, LabError> {
+pub fn library_of_boards(progress: &dyn Progress) -> Result<Vec<BoardWithMotors>, LabError> {
     progress.begin("putting motors on boards", BOARDS.len() as u64);
     let boards = BOARDS.par_iter().map(|board| {
-        let file = parse_board(board.text, board.name)?;
-        let on_board = PlantOptions {
-            board: Some(board.name.to_owned()),
-            ..PlantOptions::default()
-        };
-        let motors = SelectedMotor::library(&on_board)?;
+        let board = board_with_motors(board.name);
         progress.advance(1);
-        Ok(LibraryBoard {
-            name: board.name.to_owned(),
-            description: file.description,
-            source: file
-                .source
-                .into_iter()
-                .find(|(key, _)| key == "text")
-                .map(|(_, text)| text),
-            motors: motors.iter().map(fit).collect(),
-        })
+        board
     });
     boards.collect()
+}
+
+/// A board of the library, or of a file, with every motor of the library.
+///
+/// # Errors
+/// When there is no such board, or its file cannot be read.
+pub fn board_with_motors(given: &str) -> Result<BoardWithMotors, LabError> {
+    let motors = SelectedMotor::library(&PlantOptions::on_board(Some(given)))?;
+    let board = motors.first().and_then(|motor| motor.ast.board.as_ref());
+    let file = board.and_then(|board| board.file.clone());
+    let file = file.unwrap_or_default();
+    let mut source = file.source.into_iter();
+    Ok(BoardWithMotors {
+        name: given.to_owned(),
+        description: file.description,
+        source: source.find(|(key, _)| key == "text").map(|(_, text)| text),
+        motors: motors.iter().map(fit).collect(),
+    })
 }
 
 fn fit(motor: &SelectedMotor) -> Fit {

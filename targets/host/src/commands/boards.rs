@@ -3,17 +3,15 @@
 
 use crate::cli::{Bar, Failure, print_json, print_table, print_text};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
-use hexagen_codegen::spec::BOARDS;
-use hexagen_lab::boards::{Fit, LibraryBoard, library_of_boards};
+use hexagen_lab::boards::{BoardWithMotors, Fit, board_with_motors, library_of_boards};
 use hexagen_lab::report::Table;
 use serde::Serialize;
 
 /// Options of `boards`.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Options {
-    /// A board of the library: why the other motors do not fit it
-    #[arg(value_parser = PossibleValuesParser::new(BOARDS.iter().map(|board| board.name)))]
+    /// A board, a name of the library or a file: why the other motors do not fit it
+    #[arg(value_name = "BOARD")]
     pub board: Option<String>,
     /// Print one JSON object
     #[arg(long)]
@@ -23,16 +21,16 @@ pub struct Options {
 /// Runs the command.
 ///
 /// # Errors
-/// When the library cannot be read.
+/// When there is no such board, or its file cannot be read.
 pub fn run(options: &Options) -> Result<(), Failure> {
     #[derive(Serialize)]
     struct Library {
-        boards: Vec<LibraryBoard>,
+        boards: Vec<BoardWithMotors>,
     }
-    let mut boards = library_of_boards(&Bar::default())?;
-    if let Some(name) = &options.board {
-        boards.retain(|board| board.name == *name);
-    }
+    let boards = match &options.board {
+        Some(board) => vec![board_with_motors(board)?],
+        None => library_of_boards(&Bar::default())?,
+    };
     if options.json {
         return print_json(&Library { boards });
     }
@@ -50,7 +48,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
-fn table(boards: &[LibraryBoard]) -> Table {
+fn table(boards: &[BoardWithMotors]) -> Table {
     let mut table = Table::listed(["board", "description", "motors that fit"], []);
     for board in boards {
         let fitting = board.motors.iter().filter(|motor| motor.fits);

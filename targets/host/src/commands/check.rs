@@ -96,18 +96,23 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_json(&checked)?;
     } else {
         tell_warnings(&drive);
-        let board = asked.board.iter().map(|board| format!(" --board {board}"));
-        let next = format!(
-            "hexagen report {}{}",
-            asked.motor,
-            board.collect::<String>()
-        );
-        print_text(&checked.lines(&drive, &next).join("\n"))?;
+        print_text(&checked.lines(&drive, &next(asked)).join("\n"))?;
     }
     if checked.works {
         Ok(())
     } else {
         Err(Failure::Check(format!("error: {}", checked.verdict)))
+    }
+}
+
+/// The command that says more of the same drive.
+fn next(asked: &DriveArguments) -> String {
+    let motor = &asked.motor;
+    let board = asked.board.iter().map(|board| format!(" --board {board}"));
+    let board: String = board.collect();
+    match &asked.controller {
+        Some(controller) => format!("hexagen limit {motor}{board} --controller \"{controller}\""),
+        None => format!("hexagen report {motor}{board}"),
     }
 }
 
@@ -154,30 +159,19 @@ impl Checked {
             return (false, "does not work: it was not run".to_owned());
         };
         if lost(slow) {
+            let left = self.left(slow);
             return (
                 false,
-                "does not work: it lacks torque even where the bus has room".to_owned(),
+                format!("does not work: even at {:.0} rpm {left}", slow.rpm),
             );
         }
-        let at_rated = rated.torque_pct.unwrap_or(0.0);
-        if at_rated < LEAST_TORQUE {
-            let torque = significant(at_rated, 3);
-            return (
-                false,
-                format!("does not work: at rated speed the bus leaves {torque} % of the torque"),
-            );
+        let left = format!("at rated speed {}", self.left(rated));
+        if rated.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
+            return (false, format!("does not work: {left}"));
         }
         let mut buts = Vec::new();
         if lost(rated) {
-            buts.push(format!(
-                "at rated speed {} {} % of the torque",
-                if self.bus_current_limit_a.is_some() {
-                    "the bus and its current limit leave"
-                } else {
-                    "the bus leaves"
-                },
-                significant(at_rated, 3)
-            ));
+            buts.push(left);
         }
         if slow.ripple_pp_pct.is_some_and(|ripple| ripple > RIPPLE) {
             buts.push("the torque ripples".to_owned());
@@ -195,6 +189,20 @@ impl Checked {
             format!("works, but {}", buts.join("; "))
         };
         (true, verdict)
+    }
+
+    /// What is left of the torque at a speed, and what takes the rest.
+    fn left(&self, point: &Point) -> String {
+        let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
+        let what = if point.rpm < self.envelope_rpm {
+            // The bus drives the whole current of the reference between its commutations.
+            return format!("{torque} % of the torque, though the bus has room");
+        } else if self.bus_current_limit_a.is_some() {
+            "the bus and its current limit leave"
+        } else {
+            "the bus leaves"
+        };
+        format!("{what} {torque} % of the torque")
     }
 
     /// At most ten lines of at most 100 columns.
@@ -229,7 +237,7 @@ impl Checked {
                 self.controller, common.word
             ),
             format!(
-                "sensing     {}, {} bits to {}: {} a count, rating {} counts; trips at {}",
+                "sensing     {}, {} bits to {}: {} a count, {} at rating; trip {}",
                 match inverter.current_sensing {
                     CurrentSensing::InPhase => "in the phases",
                     CurrentSensing::LowSide(_) => "in the low legs",

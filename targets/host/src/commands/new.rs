@@ -2,18 +2,21 @@
 //!
 //! On a terminal every field that has no default is asked for, unless it was given; elsewhere such a
 //! field stands in the file to be filled in. On a board the inverter's fields that it states are left out.
-//! The file is checked before it is written.
+//! Each answer and the file are checked before it is written.
+
+mod template;
 
 use crate::cli::{Failure, note, print_json, print_text};
 use crate::files::write_new;
 use clap::Args;
-use hexagen_codegen::diagnostics::Code;
+use hexagen_codegen::diagnostics::{Code, Diagnostic};
 use hexagen_codegen::spec::{BOARDS, Board, check, parse_toml, section_of};
 use hexagen_lab::LabError;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::{BufRead, IsTerminal, Lines, StdinLock, Write};
+use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use template::{Line, SECTIONS};
 
 /// Options of `new`.
 #[derive(Args, Clone, Debug)]
@@ -34,141 +37,6 @@ pub struct Options {
     pub json: bool,
 }
 
-/// A line of the template.
-struct Line {
-    /// The fields that state it, the usual one first.
-    fields: &'static [&'static str],
-    about: &'static str,
-    example: &'static str,
-    is_needed: bool,
-    default: Option<&'static str>,
-}
-
-const fn needed(
-    fields: &'static [&'static str],
-    about: &'static str,
-    example: &'static str,
-) -> Line {
-    Line {
-        fields,
-        about,
-        example,
-        is_needed: true,
-        default: None,
-    }
-}
-
-impl Line {
-    const fn optional(self) -> Self {
-        Self {
-            is_needed: false,
-            ..self
-        }
-    }
-
-    const fn or(self, default: &'static str) -> Self {
-        Self {
-            default: Some(default),
-            ..self
-        }
-    }
-}
-
-const MOTOR: &[Line] = &[
-    needed(&["description"], "Free text for the documentation.", "Rear hub drive").optional(),
-    needed(
-        &["poles", "pole_pairs"],
-        "Magnet poles of the rotor; or pole_pairs, half as many.",
-        "8",
-    ),
-    needed(
-        &["resistance"],
-        "per_phase (one winding) or terminal (between two terminals, \"phase to phase\").",
-        "0.27 ohm terminal",
-    ),
-    needed(&["inductance"], "As the resistance.", "0.44 mH terminal"),
-    needed(
-        &["winding"],
-        "star (wye) or delta; of use only where a value is per_phase.",
-        "star",
-    )
-    .optional(),
-    needed(
-        &["back_emf", "speed_constant", "torque_constant"],
-        "The EMF: back_emf with line_to_line or phase, and peak or rms; or speed_constant (rpm/V);\n\
-         # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
-        "17.3 V/krpm line_to_line peak",
-    ),
-    needed(&["emf_shape"], "trapezoidal or sinusoidal.", "trapezoidal"),
-    needed(
-        &["rated_current"],
-        "Continuous current of a phase: its peak, or rms.",
-        "20 A",
-    ),
-    needed(
-        &["rated_torque"],
-        "Torque at rated current; checked against the EMF.",
-        "3.3 Nm",
-    )
-    .optional(),
-    needed(&["rated_speed"], "Speed under load at rated torque.", "2000 rpm"),
-    needed(
-        &["no_load_speed"],
-        "Speed without load, with nominal_voltage where that is not the bus; checked against the EMF.",
-        "2700 rpm",
-    )
-    .optional(),
-    needed(&["nominal_voltage"], "Voltage of the no-load speed.", "48 V").optional(),
-    needed(&["inertia"], "Of the rotor; needed for speed control.", "24 g cm2").optional(),
-];
-
-const INVERTER: &[Line] = &[
-    needed(&["bus_voltage"], "Nominal supply of the inverter.", "48 V"),
-    needed(
-        &["f_pwm", "sampling_time"],
-        "PWM frequency = control frequency.",
-        "20 kHz",
-    )
-    .or("20 kHz"),
-    needed(
-        &["timer_clock", "timer_period"],
-        "Clock of the centre-aligned PWM timer.",
-        "72 MHz",
-    ),
-    needed(&["adc_bits"], "Bits of the phase-current ADCs.", "12").or("12"),
-    needed(
-        &["adc_range", "adc_gain", "shunt"],
-        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB; or shunt with\n\
-         # amplifier_gain and adc_reference.",
-        "40 A",
-    ),
-    needed(
-        &["current_sensing"],
-        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches).",
-        "in_phase",
-    ),
-    needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
-    needed(
-        &["hall_timer_clock"],
-        "Clock of a timer that captures Hall edges, if the board has one.",
-        "1 MHz",
-    )
-    .optional(),
-];
-
-const CONTROLLER: &[Line] = &[needed(
-    &["kind"],
-    "pdcc, pi-pwm, fcs-mpc, phcc or p-pwm; `hexagen --help` lists their options.",
-    "pdcc",
-)
-.or("pdcc")];
-
-const SECTIONS: [(&str, &[Line]); 3] = [
-    ("motor", MOTOR),
-    ("inverter", INVERTER),
-    ("controller", CONTROLLER),
-];
-
 /// The value that names a board; it stands above the sections.
 const BOARD: &str = "board";
 
@@ -187,7 +55,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     refuse_present(&options.file, options.force)?;
     let mut draft = Draft::of(given(&options.values)?, &options.file)?;
     if !options.json && std::io::stdin().is_terminal() {
-        draft.ask(&options.file)?;
+        draft.ask(&mut std::io::stdin().lock().lines(), &options.file)?;
     }
     let missing = draft.missing();
     let text = draft.text();
@@ -225,6 +93,9 @@ fn refuse_present(file: &Path, force: bool) -> Result<(), Failure> {
 }
 
 type Values = Vec<(String, String)>;
+
+/// Lines of answers.
+type Answers<'a> = dyn Iterator<Item = io::Result<String>> + 'a;
 
 /// `FIELD=VALUE` arguments.
 fn given(arguments: &[String]) -> Result<Values, Failure> {
@@ -281,14 +152,22 @@ impl Draft {
         Ok(())
     }
 
-    /// The lines of a section: all but those whose field the board states and nobody else.
+    /// The lines of a section: those that have a place beside the other values, but for those whose field
+    /// the board states and nobody else.
     fn lines(&self, lines: &'static [Line]) -> impl Iterator<Item = &'static Line> {
-        lines.iter().filter(|line| {
+        let has_place = |line: &Line| {
+            line.only_with.is_none_or(|(field, value)| {
+                let mut values = self.values.iter();
+                values.any(|(name, given)| name == field && (value.is_empty() || given == value))
+            })
+        };
+        lines.iter().filter(move |line| {
             let is_of_board = |(_, fields): &(String, Vec<String>)| {
                 let states = |name: &&str| fields.iter().any(|field| field == name);
                 line.fields.iter().any(states)
             };
-            self.value_of(line).is_some() || !self.board.as_ref().is_some_and(is_of_board)
+            let is_stated = self.board.as_ref().is_some_and(is_of_board);
+            self.value_of(line).is_some() || (has_place(line) && !is_stated)
         })
     }
 
@@ -312,8 +191,7 @@ impl Draft {
     }
 
     /// Asks for what is missing; an empty answer leaves it to be filled in.
-    fn ask(&mut self, file: &Path) -> Result<(), Failure> {
-        let mut answers = std::io::stdin().lock().lines();
+    fn ask(&mut self, answers: &mut Answers, file: &Path) -> Result<(), Failure> {
         if self.board.is_none() {
             let known: Vec<&str> = BOARDS.iter().map(|board| board.name).collect();
             note(&format!(
@@ -321,7 +199,7 @@ impl Draft {
                 known.join(", ")
             ));
             loop {
-                match answer(&mut answers, "vesc-4")? {
+                match answer(answers, "vesc-4")? {
                     None => return Ok(()),
                     Some(board) if board.is_empty() => break,
                     Some(board) => match self.put_on(&board, file) {
@@ -331,28 +209,55 @@ impl Draft {
                 }
             }
         }
-        let lines: Vec<&Line> = self.all_lines().collect();
-        for line in lines {
-            if !line.is_needed || line.default.is_some() || self.value_of(line).is_some() {
-                continue;
-            }
+        let mut asked: Vec<&str> = Vec::new();
+        while let Some(line) = self.next_question(&asked) {
             note(&format!(
                 "{}\n  {} ",
                 line.about.replace("\n# ", " "),
                 names(line)
             ));
-            let Some(answer) = answer(&mut answers, line.example)? else {
+            let Some(answer) = answer(answers, line.example)? else {
                 return Ok(());
             };
             let (name, value) = match answer.split_once('=') {
                 Some((name, value)) => (name.trim(), value.trim()),
                 None => (line.fields[0], answer.as_str()),
             };
-            if !value.is_empty() {
-                self.values.push((name.to_owned(), value.to_owned()));
+            if value.is_empty() || self.takes(name, value, file) {
+                asked.push(line.fields[0]);
             }
         }
         Ok(())
+    }
+
+    /// The first line that is needed and neither given nor asked for. An answer may call for further
+    /// ones.
+    fn next_question(&self, asked: &[&str]) -> Option<&'static Line> {
+        self.all_lines().find(|line| {
+            let is_open = line.is_needed && line.default.is_none();
+            is_open && self.value_of(line).is_none() && !asked.contains(&line.fields[0])
+        })
+    }
+
+    /// Takes an answer, unless it is wrong whatever else is given; says so then.
+    fn takes(&mut self, name: &str, value: &str, file: &Path) -> bool {
+        self.values.push((name.to_owned(), value.to_owned()));
+        // What a value needs beside it may be answered yet.
+        let is_wrong = |code| !matches!(code, Code::MissingField | Code::DependentField);
+        let wrong = errors(&self.text(), file).into_iter();
+        let wrong: Vec<String> = wrong
+            .filter(|error| is_wrong(error.code))
+            .map(|error| error.message)
+            .collect();
+        for message in &wrong {
+            note(&format!(
+                "{message}\n  Answer again; empty to fill it in later."
+            ));
+        }
+        if !wrong.is_empty() {
+            self.values.pop();
+        }
+        wrong.is_empty()
     }
 
     /// The file.
@@ -396,7 +301,7 @@ impl Draft {
 }
 
 /// The next answer to a prompt; none at the end of the input.
-fn answer(answers: &mut Lines<StdinLock>, example: &str) -> Result<Option<String>, Failure> {
+fn answer(answers: &mut Answers, example: &str) -> Result<Option<String>, Failure> {
     let mut prompt = std::io::stderr().lock();
     let _ = write!(prompt, "  (as {example}): ").and_then(|()| prompt.flush());
     let answer = answers.next().transpose();
@@ -439,17 +344,19 @@ fn toml_text(text: &str) -> String {
     quoted
 }
 
-/// Whether what was given is right: what is missing is not wrong.
-fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
+/// What is wrong with a file.
+fn errors(text: &str, file: &Path) -> Vec<Diagnostic> {
     let name = file.display().to_string();
     let read = parse_toml(text, &name).and_then(|mut ast| {
         ast.read_board(Path::new(""), &name, &mut vec![])?;
         check(&ast).map(drop)
     });
-    let Err(errors) = read else {
-        return Ok(());
-    };
-    let wrong: Vec<String> = errors
+    read.err().into_iter().flatten().collect()
+}
+
+/// Whether what was given is right: what is missing is not wrong.
+fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
+    let wrong: Vec<String> = errors(text, file)
         .into_iter()
         .filter(|error| is_complete || error.code != Code::MissingField)
         .map(|error| error.to_string())
@@ -458,4 +365,54 @@ fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
         return Ok(());
     }
     Err(LabError::Specification(format!("{}\nNothing was written.", wrong.join("\n"))).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Draft, errors};
+    use std::path::Path;
+
+    #[test]
+    fn a_wrong_answer_is_asked_for_again_and_shunts_for_their_times() {
+        let answers = [
+            "",
+            "8",
+            "0.56 ohm",
+            "0.56 ohm terminal",
+            "0.92 H terminal",
+            "0.92 mH terminal",
+            "torque_constant=3.6 Ncm/A block_mean",
+            "square",
+            "trapezoidal",
+            "6.9 A",
+            "3500 rpm",
+            "24 V",
+            "72 MHz",
+            "shunt=5 mohm",
+            "20",
+            "3.3 V",
+            "low_side",
+            "1 us",
+            "200 ns",
+            "0 us",
+        ];
+        let mut draft = Draft::of(Vec::new(), Path::new("db42.toml")).expect("nothing is wrong");
+        let mut given = answers.iter().map(|answer| Ok((*answer).to_owned()));
+        let file = Path::new("db42.toml");
+        draft.ask(&mut given, file).expect("answers are read");
+        assert_eq!(given.count(), 0, "an answer was not asked for");
+        let text = draft.text();
+        for line in [
+            "resistance = \"0.56 ohm terminal\"",
+            "emf_shape = \"trapezoidal\"",
+            "settling_time = \"1 us\"",
+        ] {
+            assert!(text.contains(line), "{line} is not in {text}");
+        }
+        let told: Vec<String> = errors(&text, file)
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        assert!(told.is_empty(), "{told:#?}");
+    }
 }

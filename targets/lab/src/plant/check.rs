@@ -137,7 +137,12 @@ impl PlantParams {
         }
         for error in self.hall_error_deg {
             let (ok, value) = (error.abs() < 30.0, (error, "deg"));
-            require(ok, "hall_error_deg", value, "within -30 to 30 degrees")?;
+            require(
+                ok,
+                "hall_error_deg",
+                value,
+                "above -30 and below 30 degrees",
+            )?;
         }
         positive("hall_ticks_per_period", self.hall_ticks_per_period, "")?;
         for code in self.hall_codes {

@@ -1,8 +1,8 @@
 //! All results of one motor: its table, its proofs and the contents of the page.
 
 use super::{
-    Capture, ErrorsSeen, Own, PAPER_MOTOR, Planned, Results, SPEEDS, SpeedMark, Variant,
-    Verification, design_table, held, links, own_row,
+    Capture, DesignRow, ErrorsSeen, Own, PAPER_MOTOR, Planned, Results, SPEEDS, SpeedMark, Variant,
+    Verification, design_table, held, links, own_row, rows_of,
 };
 use crate::accuracy::{WORDS, at_speeds, one_step, with_word};
 use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor, stem};
@@ -43,7 +43,8 @@ impl Plan {
         let own = motor.prepare_for_torque(None)?;
         let is_paper = motor.source.name == PAPER_MOTOR;
         let mut notes = Vec::new();
-        let mut rows = plan(&motor, [is_paper, false], &mut notes)?;
+        let planned = rows_of(&own.spec.inverter);
+        let mut rows = plan(&motor, planned, [is_paper, false], &mut notes)?;
         notes.extend(rows.iter().filter_map(limited));
         rows.insert(0, of_file(&own));
         Ok(Self {
@@ -67,7 +68,7 @@ impl Plan {
         let motor = SelectedMotor::find(PAPER_MOTOR, &PlantOptions::default())?;
         let own = motor.prepare_for_torque(None)?;
         let mut notes = Vec::new();
-        let rows = plan(&motor, [true, true], &mut notes)?;
+        let rows = plan(&motor, design_table(), [true, true], &mut notes)?;
         notes.extend(PAPER_NOTES.map(str::to_owned));
         Ok(Self {
             given: PAPER_MOTOR.to_owned(),
@@ -206,13 +207,22 @@ const VERIFY_STEPS: u64 = 1_000_000;
 /// If no variant can be generated: all reasons.
 fn plan(
     motor: &SelectedMotor,
+    rows: Vec<DesignRow>,
     [is_paper, is_expected]: [bool; 2],
     notes: &mut Vec<String>,
 ) -> Result<Vec<Planned>, LabError> {
-    let (mut planned, mut refused) = (Vec::new(), Vec::new());
-    // Reasons for left-out captures, with their rows.
+    let mut planned = Vec::new();
+    // Reasons for left-out rows and captures, with their rows; no capture stands for both.
     let mut left_out: Vec<(&str, String, Vec<&str>)> = Vec::new();
-    for row in design_table() {
+    let mut leave_out = |word, error: LabError, row| {
+        let reason = without_place(&error.to_string());
+        let mut alike = left_out.iter_mut();
+        match alike.find(|left| left.0 == word && left.1 == reason) {
+            Some((_, _, rows)) => rows.push(row),
+            None => left_out.push((word, reason, vec![row])),
+        }
+    };
+    for row in rows {
         // The paper's Euler discretisation suits its motor; the exact one suits all.
         let timer = if is_paper {
             row.variant.to_owned()
@@ -230,20 +240,9 @@ fn plan(
         for (capture, word, drive) in made {
             match drive {
                 Ok(drive) => drives.push((capture, drive)),
-                Err(error) if generates => {
-                    let reason = without_place(&error.to_string());
-                    match left_out
-                        .iter_mut()
-                        .find(|left| left.0 == word && left.1 == reason)
-                    {
-                        Some((_, _, rows)) => rows.push(row.label),
-                        None => left_out.push((word, reason, vec![row.label])),
-                    }
-                }
+                Err(error) if generates => leave_out(word, error, row.label),
                 // One reason suffices, that of the capture with fewer requirements.
-                Err(error) if capture == Capture::Sampled => {
-                    refused.push(format!("{}: {error}", row.label));
-                }
+                Err(error) if capture == Capture::Sampled => leave_out("", error, row.label),
                 Err(_) => {}
             }
         }
@@ -256,9 +255,9 @@ fn plan(
         }
     }
     if planned.is_empty() {
-        return Err(LabError::Specification(refused.join("\n")));
+        let reasons: Vec<String> = left_out.into_iter().map(|(_, reason, _)| reason).collect();
+        return Err(LabError::Specification(reasons.join("\n")));
     }
-    notes.extend(refused);
     // What a board without an edge timer leaves out is told once, in the user's words.
     let has_timer = motor.ast.inverter.field("hall_timer_clock").is_some();
     if !has_timer {
@@ -271,7 +270,10 @@ fn plan(
         } else {
             rows.join("; ")
         };
-        format!("No run with `hall_capture={word}` of {rows}: {reason}")
+        match word {
+            "" => format!("No run of {rows}: {reason}"),
+            word => format!("No run with `hall_capture={word}` of {rows}: {reason}"),
+        }
     }));
     Ok(planned)
 }
@@ -388,7 +390,7 @@ mod tests {
         let fields = &mut motor.ast.inverter.fields;
         fields.retain(|field| field.name != "hall_timer_clock");
         let mut notes = Vec::new();
-        let planned = plan(&motor, [false; 2], &mut notes).expect("rows");
+        let planned = plan(&motor, design_table(), [false; 2], &mut notes).expect("rows");
         assert_eq!(planned.len(), design_table().len());
         for row in &planned {
             let captures: Vec<Capture> = row.drives.iter().map(|(capture, _)| *capture).collect();
@@ -403,7 +405,7 @@ mod tests {
     fn a_motor_without_any_valid_variant_is_an_error_and_no_empty_page() {
         let mut motor = paper_motor();
         motor.ast.motor.fields.clear();
-        let error = plan(&motor, [false; 2], &mut Vec::new()).expect_err("no rows");
+        let error = plan(&motor, design_table(), [false; 2], &mut Vec::new()).expect_err("no rows");
         assert!(error.to_string().contains("`pole_pairs`"), "{error}");
     }
 }

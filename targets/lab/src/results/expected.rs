@@ -4,6 +4,7 @@
 //! within 2 points of rated speed.
 
 use crate::closed_loop::{FiguresOfMerit, LimitOutcome, SpeedLimit};
+use hexagen_codegen::spec::{CurrentSensing, InverterSpec};
 
 /// An expected range; a single value has zero width.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,6 +182,35 @@ pub fn own_row() -> DesignRow {
         sampled: None,
         is_plotted: true,
     }
+}
+
+/// The rows of a drive: those of the design document, and where sensors in the low legs cannot see a leg
+/// that is off, whole vectors of three legs in place of those that turn legs off.
+pub fn rows_of(inverter: &InverterSpec) -> Vec<DesignRow> {
+    let mut rows = design_table();
+    if !matches!(inverter.current_sensing, CurrentSensing::LowSide(_)) {
+        return rows;
+    }
+    let is_whole =
+        |row: &DesignRow| row.variant.starts_with("fcs-mpc") || row.variant.starts_with("phcc");
+    rows.retain(|row| !is_whole(row));
+    rows.extend([
+        DesignRow {
+            label: "FCS-MPC three_phase, model EMF",
+            variant: "fcs-mpc:discretisation=euler,candidates=three_phase,emf=model,hall_capture=timer",
+            timer: Expected::default(),
+            sampled: None,
+            is_plotted: true,
+        },
+        DesignRow {
+            label: "PHCC derived table, three_phase, model EMF",
+            variant: "phcc:discretisation=euler,table=derived,candidates=three_phase,emf=model,hall_capture=timer",
+            timer: Expected::default(),
+            sampled: None,
+            is_plotted: true,
+        },
+    ]);
+    rows
 }
 
 /// The rows of the design document's table, with the nearest variant for each that does not exist:

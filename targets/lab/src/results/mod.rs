@@ -14,7 +14,7 @@ pub use data::{
 };
 pub use expected::{
     Band, DesignRow, Expectation, Expected, ExpectedPoint, Judged, design_table, judge_limit,
-    judge_mean, judge_pp, judge_rms, own_row,
+    judge_mean, judge_pp, judge_rms, own_row, rows_of,
 };
 pub use links::{FieldLinks, Item, Origin, items, links};
 pub use planned::{Planned, held};

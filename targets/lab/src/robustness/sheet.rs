@@ -183,10 +183,17 @@ fn run(drive: &Prepared, plant: &PlantOptions, rpm: f64) -> Result<Measured, Lab
     let params = plant.plant(drive)?;
     let torque = drive.demand();
     let run = plant.run(drive, rpm, torque);
-    measured(drive, &params, &run, plant.set_point(drive, torque), torque)
+    let expected = torque * plant.scale_kb.unwrap_or(1.0);
+    measured(
+        drive,
+        &params,
+        &run,
+        plant.set_point(drive, torque),
+        expected,
+    )
 }
 
-/// A run of a drive with a set-point for a torque in newton metres, before its rating.
+/// A run of a drive, before its rating. `expected`: its torque in newton metres.
 ///
 /// # Errors
 /// An impossible plant.
@@ -195,7 +202,7 @@ pub fn measured(
     params: &PlantParams,
     run: &RunOptions,
     set_point: SetPoint,
-    torque: f64,
+    expected: f64,
 ) -> Result<Measured, LabError> {
     let measured = measure(params, run, drive.maker(Model::Fixed, set_point))?;
     let swings = measured
@@ -205,7 +212,7 @@ pub fn measured(
     Ok(Measured {
         engine: drive.engine_kind(),
         modulates: drive.spec.controller.modulates(),
-        expected_torque: torque * params.k_phase[0] / drive.spec.motor.emf_constant,
+        expected_torque: expected,
         figures: measured.figures,
         swing: swings.reduce(Swing::max).unwrap_or_default(),
         tripped: measured.tripped,

@@ -1,6 +1,8 @@
 //! Subject of the report: heading, motor, inverter, and derived quantities.
 
-use crate::report::{Block, Cell, Column, Table};
+use super::phase_keys;
+use super::shapes::emf_shape;
+use crate::report::{Block, Cell, Column, Figure, Table};
 use crate::results::Results;
 use crate::text::{grouped, number, quantity};
 use hexagen_codegen::spec::{BusSource, CurrentSensing, EmfShape};
@@ -55,7 +57,19 @@ pub fn facts(data: &Results) -> Vec<Block> {
     ]);
     let source = data.source.as_ref();
     let source = source.map(|source| Block::Note(format!("Data: {source}")));
-    [tables].into_iter().chain(source).collect()
+    let shape = Figure::new(
+        None,
+        "EMF of the phases, in units of the amplitude E",
+        emf_shape(data.motor.emf_shape),
+    );
+    let drawn = [
+        Block::Legend(phase_keys(["phase a", "phase b", "phase c"])),
+        Block::Figures {
+            columns: 2,
+            figures: vec![shape],
+        },
+    ];
+    [tables].into_iter().chain(source).chain(drawn).collect()
 }
 
 fn table(title: &str, rows: Vec<(&str, String)>) -> Table {

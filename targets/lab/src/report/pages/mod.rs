@@ -5,6 +5,7 @@ mod commutation;
 mod facts;
 mod paper;
 mod robustness;
+mod shapes;
 mod spectra;
 mod stability;
 mod table;

@@ -3,10 +3,11 @@
 use super::tables::{emf, emf_corner};
 use crate::closed_loop::{harmonic_of_quasi_square, hexagon};
 use crate::report::pages::phase_keys;
+use crate::report::pages::shapes::{columns, emf_shape, phases};
 use crate::report::pages::spectra::CURRENT_ORDERS;
 use crate::report::plot::{
-    Bar, Bars, Columns, FIRST_DEG, Level, Named, Plane, Point, Stroke, Wave, bars, corners,
-    ideal_phase, levels, plane, ray, wave,
+    Bar, Bars, Level, Named, Plane, Point, Stroke, Wave, bars, corners, ideal_phase, levels, plane,
+    ray, wave,
 };
 use crate::report::{Block, Figure, IDEAL, PHASES, Sign, variant};
 use crate::reproduction::Reproduction;
@@ -17,48 +18,9 @@ use std::f64::consts::{FRAC_PI_6, PI};
 /// Width of a picture of the plane in CSS pixels.
 const WIDTH: f64 = 380.0;
 
-/// A signal without ripple.
-fn columns(points: impl IntoIterator<Item = Point>) -> Columns {
-    let (angle, mean): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-    Columns {
-        least: mean.clone(),
-        most: mean.clone(),
-        angle,
-        mean,
-    }
-}
-
-/// Signals of the three phases in units of their amplitude.
-fn phases(description: &str, title: &str, of: impl Fn(usize) -> Columns) -> crate::report::Plot {
-    let phases = PHASES.into_iter().enumerate();
-    wave(Wave {
-        description: format!("{description} of the three phases over an electrical turn"),
-        title: title.to_owned(),
-        range: -1.2..1.2,
-        signals: phases
-            .map(|(phase, color)| {
-                (
-                    format!("phase {}", ["a", "b", "c"][phase]),
-                    color,
-                    of(phase),
-                )
-            })
-            .collect(),
-        ideal: Vec::new(),
-        demand: None,
-    })
-}
-
 /// Figure 2: EMF, ideal currents and Hall signals over a turn.
 pub fn figure_2(data: &Reproduction) -> Vec<Block> {
-    let shape = data.motor.emf_shape;
-    let emf = phases("EMF", "EMF in E", |phase| {
-        let degrees = (0..=360).map(|k| FIRST_DEG + f64::from(k));
-        columns(degrees.map(|degrees| {
-            let theta = degrees - 120.0 * phase as f64;
-            (degrees, shape.at(theta.to_radians()))
-        }))
-    });
+    let emf = emf_shape(data.motor.emf_shape);
     let currents = phases("Ideal currents", "ideal current in I", |phase| {
         columns(ideal_phase(1.0, phase))
     });

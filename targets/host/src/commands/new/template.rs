@@ -1,0 +1,188 @@
+//! The lines of a new motor file.
+
+/// A line of the template.
+pub struct Line {
+    /// The fields that state it, the usual one first.
+    pub fields: &'static [&'static str],
+    /// What it is; a further line begins with `# `.
+    pub about: &'static str,
+    /// A value.
+    pub example: &'static str,
+    /// Whether a drive needs it.
+    pub is_needed: bool,
+    /// The value where none is given.
+    pub default: Option<&'static str>,
+    /// Another field, and the value of it, without which it has no place in the file; an empty value stands for any.
+    pub only_with: Option<(&'static str, &'static str)>,
+}
+
+const fn needed(
+    fields: &'static [&'static str],
+    about: &'static str,
+    example: &'static str,
+) -> Line {
+    Line {
+        fields,
+        about,
+        example,
+        is_needed: true,
+        default: None,
+        only_with: None,
+    }
+}
+
+impl Line {
+    const fn optional(self) -> Self {
+        Self {
+            is_needed: false,
+            ..self
+        }
+    }
+
+    const fn only_with(self, field: &'static str, value: &'static str) -> Self {
+        Self {
+            only_with: Some((field, value)),
+            ..self
+        }
+    }
+
+    const fn or(self, default: &'static str) -> Self {
+        Self {
+            default: Some(default),
+            ..self
+        }
+    }
+}
+
+const MOTOR: &[Line] = &[
+    needed(&["description"], "Free text for the documentation.", "Rear hub drive").optional(),
+    needed(
+        &["poles", "pole_pairs"],
+        "Magnet poles of the rotor; or pole_pairs, half as many.",
+        "8",
+    ),
+    needed(
+        &["resistance"],
+        "per_phase (one winding) or terminal (between two terminals, \"phase to phase\").",
+        "0.27 ohm terminal",
+    ),
+    needed(&["inductance"], "As the resistance.", "0.44 mH terminal"),
+    needed(
+        &["winding"],
+        "star (wye) or delta; of use only where a value is per_phase.",
+        "star",
+    )
+    .optional(),
+    needed(
+        &["back_emf", "speed_constant", "torque_constant"],
+        "The EMF: back_emf with line_to_line or phase, and peak or rms; or speed_constant (rpm/V);\n\
+         # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
+        "17.3 V/krpm line_to_line peak",
+    ),
+    needed(&["emf_shape"], "trapezoidal, sinusoidal, or the guide's harmonics or samples.", "trapezoidal"),
+    needed(
+        &["rated_current"],
+        "Continuous current of a phase: its peak, or rms.",
+        "20 A",
+    ),
+    needed(
+        &["rated_torque"],
+        "Torque at rated current; checked against the EMF.",
+        "3.3 Nm",
+    )
+    .optional(),
+    needed(&["rated_speed"], "Speed under load at rated torque.", "2000 rpm"),
+    needed(
+        &["no_load_speed"],
+        "Speed without load, with nominal_voltage where that is not the bus; checked against the EMF.",
+        "2700 rpm",
+    )
+    .optional(),
+    needed(&["nominal_voltage"], "Voltage of the no-load speed.", "48 V").optional(),
+    needed(&["inertia"], "Of the rotor; needed for speed control.", "24 g cm2").optional(),
+];
+
+const INVERTER: &[Line] = &[
+    needed(&["bus_voltage"], "Nominal supply of the inverter.", "48 V"),
+    needed(
+        &["f_pwm", "sampling_time"],
+        "PWM frequency = control frequency.",
+        "20 kHz",
+    )
+    .or("20 kHz"),
+    needed(
+        &["timer_clock", "timer_period"],
+        "Clock of the centre-aligned PWM timer.",
+        "72 MHz",
+    ),
+    needed(&["adc_bits"], "Bits of the phase-current ADCs.", "12").or("12"),
+    needed(
+        &["adc_range", "adc_gain", "shunt"],
+        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB; or shunt with\n\
+         # amplifier_gain and adc_reference.",
+        "40 A",
+    ),
+    needed(
+        &["amplifier_gain"],
+        "Gain from the shunt's voltage to the ADC.",
+        "20",
+    )
+    .only_with("shunt", ""),
+    needed(
+        &["adc_reference"],
+        "Voltage of the ADC's full scale.",
+        "3.3 V",
+    )
+    .only_with("shunt", ""),
+    needed(
+        &["current_sensing"],
+        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches).",
+        "in_phase",
+    ),
+    needed(
+        &["settling_time"],
+        "From the switching of a leg until its amplifier shows the current.",
+        "1 us",
+    )
+    .only_with("current_sensing", "low_side"),
+    needed(
+        &["aperture_time"],
+        "For which the ADC samples a current.",
+        "200 ns",
+    )
+    .only_with("current_sensing", "low_side"),
+    needed(
+        &["conversion_time"],
+        "From the sample of one current to that of the next; 0 where ADCs convert at once.",
+        "0 us",
+    )
+    .only_with("current_sensing", "low_side"),
+    needed(
+        &["sensed_phases"],
+        "Legs with a shunt: ab, bc, ca or abc.",
+        "ab",
+    )
+    .only_with("current_sensing", "low_side")
+    .or("ab"),
+    needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
+    needed(
+        &["hall_timer_clock"],
+        "Clock of a timer that captures Hall edges, if the board has one.",
+        "1 MHz",
+    )
+    .optional(),
+];
+
+const CONTROLLER: &[Line] = &[needed(
+    &["kind"],
+    "pdcc, pi-pwm, fcs-mpc, phcc or p-pwm; `hexagen --help` lists their options.",
+    "pdcc",
+)
+.or("pdcc")];
+
+/// The sections with their lines.
+pub const SECTIONS: [(&str, &[Line]); 3] = [
+    ("motor", MOTOR),
+    ("inverter", INVERTER),
+    ("controller", CONTROLLER),
+];
