@@ -41,6 +41,12 @@ impl<'a> Naive<'a> {
         let angle = (self.theta_e - lag).rem_euclid(TAU);
         let shape = match self.p.shape {
             EmfShape::Sinusoidal => angle.sin(),
+            EmfShape::Harmonics { sines, cosines } => (0..12)
+                .map(|k| {
+                    let (sin, cos) = ((2 * k + 1) as f64 * angle).sin_cos();
+                    sines[k] * sin + cosines[k] * cos
+                })
+                .sum(),
             EmfShape::Trapezoidal { flat_top_deg } => {
                 let ramp = (PI - flat_top_deg.to_radians()) / 2.0;
                 let quarter = if angle < PI {
@@ -244,16 +250,33 @@ fn dead_time_and_unequal_phases_agree() {
             &random_commands(24, seed),
             0.03,
         );
-        p.shape = EmfShape::Sinusoidal;
-        compare(
-            &p,
-            2.0,
-            omega_m,
-            [2.0, 1.0],
-            &random_commands(24, seed + 100),
-            0.03,
-        );
+        for (shape, seed) in [(EmfShape::Sinusoidal, seed + 100), (skewed(), seed + 300)] {
+            p.shape = shape;
+            compare(
+                &p,
+                2.0,
+                omega_m,
+                [2.0, 1.0],
+                &random_commands(24, seed),
+                0.03,
+            );
+        }
     }
+}
+
+/// Harmonics up to the highest order, with halves of a wave that differ.
+fn skewed() -> EmfShape {
+    let (mut sines, mut cosines) = ([0.0; 12], [0.0; 12]);
+    for (order, sine, cosine) in [
+        (1, 1.0, 0.0),
+        (3, 0.1, 0.0),
+        (5, 0.05, 0.04),
+        (23, 0.0, 0.01),
+    ] {
+        sines[order / 2] = sine;
+        cosines[order / 2] = cosine;
+    }
+    EmfShape::Harmonics { sines, cosines }
 }
 
 #[test]
@@ -298,9 +321,13 @@ impl Observer for Charge {
 
 #[test]
 fn rectification_above_the_bus_voltage_agrees() {
-    let mut sine = motor();
-    sine.shape = EmfShape::Sinusoidal;
-    for (p, factor) in [(motor(), 1.1), (crooked(), 1.2), (sine, 1.3)] {
+    let of_shape = |shape| PlantParams { shape, ..motor() };
+    for (p, factor) in [
+        (motor(), 1.1),
+        (crooked(), 1.2),
+        (of_shape(EmfShape::Sinusoidal), 1.3),
+        (of_shape(skewed()), 1.3),
+    ] {
         let omega_m = factor * p.v_bus / (2.0 * p.k_phase[0]);
         let off = vec![Legs::OFF; 80];
         compare(&p, 0.1, omega_m, [0.0, 0.0], &off, 0.02);

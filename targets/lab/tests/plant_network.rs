@@ -359,6 +359,11 @@ fn energy_is_balanced() {
     let mut sine = motor();
     sine.shape = EmfShape::Sinusoidal;
     energy_of(sine, -80.0, 1e-10);
+    let mut series = motor();
+    let (mut sines, mut cosines) = ([0.0; 12], [0.0; 12]);
+    (sines[0], sines[2], cosines[3]) = (1.0, 0.06, 0.03);
+    series.shape = EmfShape::Harmonics { sines, cosines };
+    energy_of(series, 80.0, 1e-10);
     let mut crooked = motor().scaled(1.3, 0.8, 1.1);
     crooked.inductance[1] *= 1.2;
     crooked.resistance[2] *= 0.7;
