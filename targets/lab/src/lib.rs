@@ -5,6 +5,7 @@
 //! formats and limits into the runtime's types.
 
 pub mod accuracy;
+pub mod advise;
 pub mod any_profile;
 pub mod boards;
 pub mod closed_loop;

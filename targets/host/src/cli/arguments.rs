@@ -2,8 +2,8 @@
 
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
-    boards, check, compare, completions, explain, faults, generate, halls, limit, motors, new,
-    prove, replay, report, reproduce, simulate, verify,
+    advise, boards, check, compare, completions, explain, faults, generate, halls, limit, motors,
+    new, prove, replay, report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::spec::{EmfShape, KINDS, option_help};
@@ -64,6 +64,8 @@ pub enum Command {
     New(new::Options),
     /// Says within a second whether and how well a drive will work
     Check(check::Options),
+    /// Tries all controllers on a motor and its board, and recommends one with the reason
+    Advise(advise::Options),
     /// Explains a code of an error or warning: cause, example, remedy
     Explain(explain::Options),
     /// Prints a script that completes the command line in a shell

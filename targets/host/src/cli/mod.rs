@@ -54,6 +54,7 @@ pub fn run() -> ExitCode {
         Command::Compare(options) => commands::compare::run(&options),
         Command::Reproduce(options) => commands::reproduce::run(&options),
         Command::Motors(options) => commands::motors::run(&options),
+        Command::Advise(options) => commands::advise::run(&options),
         Command::Boards(options) => commands::boards::run(&options),
         Command::New(options) => commands::new::run(&options),
         Command::Check(options) => commands::check::run(&options),

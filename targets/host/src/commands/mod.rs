@@ -3,6 +3,7 @@
 //! Each has its options, a function that collects plain data, and one that prints them as a table
 //! or as JSON.
 
+pub mod advise;
 pub mod boards;
 pub mod check;
 pub mod compare;

@@ -120,6 +120,26 @@ fn a_new_file_on_a_board_leaves_out_what_the_board_states() {
     assert!(!std::path::Path::new(other).exists());
 }
 
+#[test]
+fn the_best_controller_of_a_motor_is_recommended_with_the_reason() {
+    let said = run(["advise", "linix-45zwn24-40"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    for text in [
+        "recommended",
+        "with deviations",
+        "Why: 16 of 16",
+        "fewest operations",
+    ] {
+        assert!(said.stdout.contains(text), "{text}: {said:?}");
+    }
+    let board = ["--board", "st-b-g431b-esc1", "--json"];
+    let advice = run(["advise", "teknic-m2310p"].iter().chain(&board)).json();
+    let place = advice["recommended"].as_u64().expect("a place") as usize;
+    assert!(advice["tried"][place]["why_not"].is_null(), "{advice}");
+    run(["advise", "no-motor"]).assert_bad_input(&["no-motor"]);
+    run(["advise", "teknic-m2310p", "--board", "esc1"]).assert_bad_input(&["esc1"]);
+}
+
 #[track_caller]
 fn assert_short(said: &Said) {
     let lines: Vec<&str> = said.stdout.lines().collect();
@@ -153,7 +173,7 @@ fn a_motor_is_checked_on_a_board() {
     assert_eq!(said.code, 0, "{said:?}");
     assert_eq!(said.stderr, "", "{said:?}");
     assert!(said.stdout.contains("29.37 mA a count"), "{said:?}");
-    let next = "hexagen simulate teknic-m2310p --board st-b-g431b-esc1";
+    let next = "hexagen report teknic-m2310p --board st-b-g431b-esc1";
     assert!(said.stdout.contains(next), "{said:?}");
     run(["check", "teknic-m2310p", "--board", "esc1"]).assert_bad_input(&["esc1"]);
 }

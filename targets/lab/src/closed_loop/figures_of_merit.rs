@@ -34,6 +34,9 @@ pub struct FiguresOfMerit {
     /// Total harmonic distortion of the phase current (everything except mean and fundamental,
     /// switching ripple included) in percent of the fundamental; mean of the phases.
     pub thd_pct: Option<f64>,
+    /// Root mean square of the phase currents over all phases, in amperes: three times its square and R
+    /// are the copper loss.
+    pub current_rms_a: Option<f64>,
     /// RMS distance of the current from the quasi-square reference of the true sector in the
     /// alpha-beta plane, in amperes. The reference's amplitude is that of the limited set-point
     /// ([`super::RunOptions::current`]).
@@ -92,6 +95,9 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
     });
     let tracking = (squares.sum::<f64>() / bins as f64).sqrt();
 
+    let phases = trace.i_a.iter().chain(&trace.i_b).chain(&i_c);
+    let rms = (phases.map(|i| i * i).sum::<f64>() / (3 * bins) as f64).sqrt();
+
     let turn_ons: u64 = trace
         .periods
         .iter()
@@ -109,6 +115,7 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
         i11_pct: current_harmonic(11),
         i13_pct: current_harmonic(13),
         thd_pct: of_fundamental(&distortion),
+        current_rms_a: Some(rms),
         tracking_rms_a: Some(tracking),
         commutation_us: commutation_time(trace, current, threshold).map(|time| time * 1e6),
         switching_hz: Some(turn_ons as f64 / 6.0 / trace.duration()),
@@ -118,7 +125,7 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
 
 impl FiguresOfMerit {
     /// Names, values and units of figures of merit, in the order of their keys.
-    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 14] {
+    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 15] {
         [
             ("mean torque", self.mean_torque_nm, "Nm"),
             ("torque ripple, peak to peak", self.ripple_pp_pct, "%"),
@@ -130,6 +137,7 @@ impl FiguresOfMerit {
             ("current harmonic 11", self.i11_pct, "%"),
             ("current harmonic 13", self.i13_pct, "%"),
             ("current distortion", self.thd_pct, "%"),
+            ("phase current, rms", self.current_rms_a, "A"),
             ("tracking error, rms", self.tracking_rms_a, "A"),
             ("commutation", self.commutation_us, "us"),
             ("switching per device", self.switching_hz, "Hz"),
@@ -154,6 +162,7 @@ impl FiguresOfMerit {
             i11_pct: mean(|m| m.i11_pct),
             i13_pct: mean(|m| m.i13_pct),
             thd_pct: mean(|m| m.thd_pct),
+            current_rms_a: mean(|m| m.current_rms_a),
             tracking_rms_a: mean(|m| m.tracking_rms_a),
             commutation_us: mean(|m| m.commutation_us),
             switching_hz: mean(|m| m.switching_hz),

@@ -89,7 +89,7 @@ impl SelectedMotor {
     /// If there is none, or its file is not TOML.
     pub fn find(given: &str, plant: &PlantOptions) -> Result<Self, LabError> {
         let source = MotorSource::find(given)?;
-        Self::read(source, plant)
+        Self::of(source, plant)
     }
 
     /// Every motor of the library.
@@ -98,10 +98,14 @@ impl SelectedMotor {
     /// As [`Self::find`].
     pub fn library(plant: &PlantOptions) -> Result<Vec<Self>, LabError> {
         let all = library().iter().map(MotorSource::from);
-        all.map(|source| Self::read(source, plant)).collect()
+        all.map(|source| Self::of(source, plant)).collect()
     }
 
-    fn read(source: MotorSource, plant: &PlantOptions) -> Result<Self, LabError> {
+    /// Reads a motor's text.
+    ///
+    /// # Errors
+    /// If it is not TOML.
+    pub fn of(source: MotorSource, plant: &PlantOptions) -> Result<Self, LabError> {
         let mut ast = parse_toml(&source.text, &source.file)?;
         match &plant.board {
             Some(board) => ast.put_on(board_of(board)?),

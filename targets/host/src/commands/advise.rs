@@ -1,0 +1,115 @@
+//! `hexagen advise`: tries the controllers on a motor and its board, and recommends one.
+
+use crate::cli::{Bar, Failure, print_json, print_table, print_text};
+use clap::Args;
+use hexagen_lab::advise::{Advice, DEVIATING_AT, Point, SPEEDS, Tried, Worst, advise};
+use hexagen_lab::engine::{PlantOptions, SelectedMotor};
+use hexagen_lab::report::{Column, Table};
+use hexagen_lab::text::significant;
+
+/// Options of `advise`.
+#[derive(Args, Clone, Debug)]
+pub struct Options {
+    /// Motor file, or name of a library motor
+    #[arg(value_name = "MOTOR")]
+    pub motor: String,
+    /// Board, a name of the library or a file [default: the motor file's]
+    #[arg(long, value_name = "BOARD")]
+    pub board: Option<String>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// No such motor or board, or a motor of which no controller can be generated.
+pub fn run(options: &Options) -> Result<(), Failure> {
+    let on_board = PlantOptions::on_board(options.board.as_deref());
+    let motor = SelectedMotor::find(&options.motor, &on_board)?;
+    let advice = advise(&motor, &Bar::default())?;
+    if options.json {
+        return print_json(&advice);
+    }
+    print_table(&table(&advice))?;
+    let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
+    print_text(&format!(
+        "Rated torque at {speeds} % of rated speed, the worst of them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3,\n\
+         k_b x 1.1 and the bus 15 % low, each alone. Copper loss and switching at rated speed.\n\
+         Holds to: speed up to which those that are alike else hold the torque. Operations: longest path of a step's law."
+    ))?;
+    print_text(&verdict(&advice))
+}
+
+fn verdict(advice: &Advice) -> String {
+    let Some(recommended) = advice.recommended else {
+        return format!("{}: {}", advice.motor, advice.reason);
+    };
+    let variant = advice.tried[recommended].variant;
+    let fields = variant.split_once(':').map_or_else(
+        || format!("kind = \"{variant}\""),
+        |(kind, options)| format!("kind = \"{kind}\" with {}", options.replace(',', ", ")),
+    );
+    format!(
+        "{}: {variant}, that is {fields}. Why: {}.",
+        advice.motor, advice.reason
+    )
+}
+
+fn table(advice: &Advice) -> Table {
+    let numbers = [
+        "torque %",
+        "ripple %",
+        "deviating torque %",
+        "ripple %",
+        "copper W",
+        "switching kHz",
+        "holds to %",
+        "operations",
+    ];
+    let numbers = numbers.map(|name| Column::number(name, ""));
+    let columns = [Column::text("controller")].into_iter().chain(numbers);
+    let mut table = Table::new("", columns.chain([Column::text("why not")]));
+    for (place, tried) in advice.tried.iter().enumerate() {
+        let why_not = if advice.recommended == Some(place) {
+            "recommended".to_owned()
+        } else {
+            tried.why_not.clone().unwrap_or_default()
+        };
+        let mut row = vec![tried.variant.to_owned()];
+        row.extend(figures(tried));
+        row.push(why_not);
+        table.row(row);
+    }
+    table
+}
+
+fn figures(tried: &Tried) -> [String; 8] {
+    let shown = |value: Option<f64>| value.map_or("-".to_owned(), |value| significant(value, 3));
+    let of = |points: &[Point]| {
+        let worst = Worst::of(points);
+        [
+            shown(worst.map(|worst| worst.torque_pct)),
+            shown(worst.map(|worst| worst.ripple_pct)),
+        ]
+    };
+    let ([torque, ripple], [deviating, rough]) = (of(&tried.nominal), of(&tried.deviating));
+    let rated = tried.nominal.last();
+    [
+        torque,
+        ripple,
+        deviating,
+        rough,
+        shown(rated.and_then(|point| point.copper_w)),
+        shown(
+            rated
+                .and_then(|point| point.switching_hz)
+                .map(|hz| hz / 1e3),
+        ),
+        shown(tried.limit_pct),
+        tried
+            .operations
+            .map_or("-".to_owned(), |count| count.to_string()),
+    ]
+}

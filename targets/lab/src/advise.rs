@@ -1,0 +1,473 @@
+//! Which controller suits a motor on its board: variants are tried on the simulated motor, and one is
+//! recommended, with the reason.
+//!
+//! The rule takes what must not fail first, then what costs: no trip, torque, ripple, both again with
+//! deviations of motor and bus, the speed up to which the torque is held, and of those that are alike the
+//! one with the fewest operations in a step.
+
+use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
+use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use crate::robustness::measured;
+use crate::{LabError, Progress};
+use hexagen_codegen::ir::PathCost;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// The default drive: what is generated where a file says nothing of the controller.
+pub const DEFAULT: &str = "pdcc";
+
+/// Variants that are tried, the default first.
+pub const VARIANTS: [&str; 16] = [
+    DEFAULT,
+    "pdcc:saturation=nearest",
+    "pdcc:saturation=keep_angle",
+    "pdcc:common_mode=clamped_low",
+    "pdcc:emf=model",
+    "pdcc:reference=quasi_square",
+    "pdcc:modulation=pair",
+    "pdcc:word=16",
+    "pi-pwm",
+    "pi-pwm:reference=quasi_square",
+    "p-pwm",
+    "fcs-mpc",
+    "fcs-mpc:candidates=three_phase",
+    "fcs-mpc:modulated=on",
+    "phcc",
+    "phcc:candidates=three_phase",
+];
+
+/// Electrical angle at the start of a run, radian.
+const START: f64 = 0.1;
+
+/// Speeds of the runs, percent of the rated one.
+pub const SPEEDS: [u32; 3] = [25, 60, 100];
+
+/// Speed of the runs with a deviation, percent of the rated one.
+pub const DEVIATING_AT: u32 = 60;
+
+/// Torque that two variants may differ by and count as alike, percent of the rated one.
+pub const TORQUE_ALIKE: f64 = 1.0;
+
+/// Ripple that two variants may differ by and count as alike, percent of the mean torque.
+pub const RIPPLE_ALIKE: f64 = 2.0;
+
+/// Speed up to which the torque is held that two variants may differ by and count as alike, percent of
+/// the rated one.
+pub const LIMIT_ALIKE: f64 = 2.0;
+
+/// Deviations of motor and bus, each alone.
+const DEVIATIONS: [(&str, fn(&mut PlantOptions, f64)); 5] = [
+    ("R x 1.4", |plant, _| plant.scale_r = Some(1.4)),
+    ("L x 0.75", |plant, _| plant.scale_l = Some(0.75)),
+    ("L x 1.3", |plant, _| plant.scale_l = Some(1.3)),
+    ("k_b x 1.1", |plant, _| plant.scale_kb = Some(1.1)),
+    ("bus 15 % low", |plant, bus| plant.v_bus = Some(0.85 * bus)),
+];
+
+/// A run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Speed, percent of the rated one.
+    pub speed_pct: u32,
+    /// What deviates, if anything.
+    pub deviation: Option<&'static str>,
+    /// Mean torque, percent of what is demanded with the true EMF constant; none for a drive that trips.
+    pub torque_pct: Option<f64>,
+    /// Peak-to-peak ripple, percent of the mean.
+    pub ripple_pct: Option<f64>,
+    /// Copper loss, watt.
+    pub copper_w: Option<f64>,
+    /// Turn-ons per switch and second, mean of the six, hertz.
+    pub switching_hz: Option<f64>,
+}
+
+/// A variant that was tried.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tried {
+    /// The variant.
+    pub variant: &'static str,
+    /// Why the generator refuses it, if it does.
+    pub refused: Option<String>,
+    /// Runs on the stated motor, at each of [`SPEEDS`].
+    pub nominal: Vec<Point>,
+    /// Runs with each deviation.
+    pub deviating: Vec<Point>,
+    /// Operations on the longest path of a step's law.
+    pub operations: Option<u32>,
+    /// Speed up to which it holds its torque, percent of the rated one; of those alone that are alike else.
+    pub limit_pct: Option<f64>,
+    /// Why it is not the recommended one.
+    pub why_not: Option<String>,
+}
+
+impl Tried {
+    fn new(variant: &'static str) -> Self {
+        Self {
+            variant,
+            refused: None,
+            nominal: Vec::new(),
+            deviating: Vec::new(),
+            operations: None,
+            limit_pct: None,
+            why_not: None,
+        }
+    }
+}
+
+/// All variants, and the recommended one.
+#[derive(Clone, Debug, Serialize)]
+pub struct Advice {
+    /// Name of the motor.
+    pub motor: String,
+    /// The variants.
+    pub tried: Vec<Tried>,
+    /// Place of the recommended one; none if all trip or are refused.
+    pub recommended: Option<usize>,
+    /// Why that one.
+    pub reason: String,
+}
+
+/// Torque and ripple of the worst run of several.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Worst {
+    /// Least torque, percent, at most 100: more than the demand is no gain.
+    pub torque_pct: f64,
+    /// Greatest ripple, percent.
+    pub ripple_pct: f64,
+}
+
+impl Worst {
+    /// Of runs; none if one of them tripped, or there are none.
+    pub fn of(points: &[Point]) -> Option<Self> {
+        let worst = Self {
+            torque_pct: 100.0,
+            ripple_pct: 0.0,
+        };
+        let worse = |worst: Self, point: &Point| {
+            Some(Self {
+                torque_pct: worst.torque_pct.min(point.torque_pct?),
+                ripple_pct: worst.ripple_pct.max(point.ripple_pct?),
+            })
+        };
+        let (first, rest) = points.split_first()?;
+        rest.iter().try_fold(worse(worst, first)?, worse)
+    }
+}
+
+/// What the default drive lacks of the best of all variants.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Regret {
+    /// Torque, percent of the rated one.
+    pub torque_pct: f64,
+    /// Ripple, percent of the mean torque, beside those variants that hold as much torque.
+    pub ripple_pct: f64,
+}
+
+/// Tries all variants of a motor and recommends one.
+///
+/// # Errors
+/// A plant parameter out of range; a motor of which no variant is generated.
+pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, LabError> {
+    let prepared = prepare(motor)?;
+    let mut advice = Advice {
+        motor: motor.source.name.clone(),
+        tried: try_all(&prepared, progress)?,
+        recommended: None,
+        reason: String::new(),
+    };
+    let mut left = advice.alike();
+    let limits = left.par_iter().map(|&k| {
+        let drive = prepared[k].1.as_ref();
+        drive.map_or(Ok(None), limit_of)
+    });
+    let limits: Vec<Option<f64>> = limits.collect::<Result<_, LabError>>()?;
+    for (&k, limit) in left.iter().zip(limits) {
+        advice.tried[k].limit_pct = limit;
+    }
+    advice.recommend(&mut left);
+    Ok(advice)
+}
+
+/// What the default drive of a motor lacks of the best variant; none where it trips.
+///
+/// # Errors
+/// As [`advise`].
+pub fn regret(motor: &SelectedMotor) -> Result<Option<Regret>, LabError> {
+    Ok(Regret::of(&try_all(&prepare(motor)?, &())?))
+}
+
+/// A variant, taken through the generator.
+type Drive = (&'static str, Result<Prepared, LabError>);
+
+/// All variants of a motor.
+///
+/// # Errors
+/// If none is generated: the reason of the default.
+fn prepare(motor: &SelectedMotor) -> Result<Vec<Drive>, LabError> {
+    let drives = VARIANTS.map(|variant| (variant, motor.prepare_for_torque(Some(variant))));
+    let mut drives = Vec::from(drives);
+    if drives.iter().all(|(_, drive)| drive.is_err()) {
+        drives.swap_remove(0).1?;
+    }
+    Ok(drives)
+}
+
+fn try_all(drives: &[Drive], progress: &dyn Progress) -> Result<Vec<Tried>, LabError> {
+    progress.begin("trying variants", drives.len() as u64);
+    let tried = drives.par_iter().map(|(variant, drive)| {
+        let tried = match drive {
+            Ok(drive) => try_drive(variant, drive),
+            Err(reason) => Ok(Tried {
+                refused: Some(reason.to_string()),
+                ..Tried::new(variant)
+            }),
+        };
+        progress.advance(1);
+        tried
+    });
+    tried.collect()
+}
+
+/// Speed up to which a drive holds its torque, percent of the rated one.
+fn limit_of(drive: &Prepared) -> Result<Option<f64>, LabError> {
+    let torque = drive.demand();
+    let run = RunOptions {
+        starts: vec![START],
+        ..run_of(&drive.spec, 0.0, torque)
+    };
+    let scan = LimitOptions::new(drive.rated_rpm(), torque);
+    let maker = drive.maker(Model::Fixed, drive.set_point(torque));
+    let limit = speed_limit(&plant_of(&drive.spec), &run, &scan, maker)?;
+    Ok(limit.limit_pct)
+}
+
+fn try_drive(variant: &'static str, drive: &Prepared) -> Result<Tried, LabError> {
+    let step = &drive.generated.graph.program().step;
+    let mut tried = Tried {
+        operations: Some(PathCost::of_function(step).worst.total()),
+        ..Tried::new(variant)
+    };
+    for speed in SPEEDS {
+        let point = run(drive, &PlantOptions::default(), (speed, None))?;
+        tried.nominal.push(point);
+    }
+    for (name, deviate) in DEVIATIONS {
+        let mut plant = PlantOptions::default();
+        deviate(&mut plant, drive.spec.inverter.v_bus);
+        tried
+            .deviating
+            .push(run(drive, &plant, (DEVIATING_AT, Some(name)))?);
+    }
+    Ok(tried)
+}
+
+/// One run at rated torque.
+fn run(
+    drive: &Prepared,
+    plant: &PlantOptions,
+    (speed_pct, deviation): (u32, Option<&'static str>),
+) -> Result<Point, LabError> {
+    let plant = PlantOptions {
+        start_angle: Some(START),
+        ..plant.clone()
+    };
+    let rpm = drive.rated_rpm() * f64::from(speed_pct) / 100.0;
+    let torque = drive.demand();
+    let expected = drive.rated_torque() * plant.scale_kb.unwrap_or(1.0);
+    let params = plant.plant(drive)?;
+    let found = measured(
+        drive,
+        &params,
+        &plant.run(drive, rpm, torque),
+        plant.set_point(drive, torque),
+        expected,
+    )?;
+    let figures = found.figures;
+    let mean = figures.mean_torque_nm.filter(|_| found.tripped.is_none());
+    Ok(Point {
+        speed_pct,
+        deviation,
+        torque_pct: mean.map(|mean| 100.0 * mean / expected),
+        ripple_pct: figures.ripple_pp_pct,
+        copper_w: figures
+            .current_rms_a
+            .map(|rms| 3.0 * drive.spec.motor.resistance * rms * rms),
+        switching_hz: figures.switching_hz,
+    })
+}
+
+impl Advice {
+    /// The variants that are alike in torque and ripple, with and without deviations, as good as any. Each
+    /// rule leaves some of the others over, and says what it has against the rest.
+    fn alike(&mut self) -> Vec<usize> {
+        let many = self.tried.len();
+        let mut left: Vec<usize> = (0..many).collect();
+        self.keep(&mut left, &works);
+        self.reason = format!("{} of {many} variants never trip", left.len());
+        let rules: [(&str, fn(&Tried) -> &[Point]); 2] = [
+            ("on the stated motor", |tried| &tried.nominal),
+            ("with deviations", |tried| &tried.deviating),
+        ];
+        for (when, points) in rules {
+            let worst = |tried: &Tried| Worst::of(points(tried));
+            let torque = |tried: &Tried| worst(tried).map_or(0.0, |worst| worst.torque_pct);
+            let ripple =
+                |tried: &Tried| worst(tried).map_or(f64::INFINITY, |worst| worst.ripple_pct);
+            let most = self.most(&left, &torque);
+            self.keep(&mut left, &|tried| {
+                let lacks = torque(tried) < most - TORQUE_ALIKE;
+                lacks.then(|| format!("{:.1} % of the torque {when}", torque(tried)))
+            });
+            let least = -self.most(&left, &|tried| -ripple(tried));
+            self.keep(&mut left, &|tried| {
+                let ripples = ripple(tried) > least + RIPPLE_ALIKE;
+                ripples.then(|| format!("{:.1} % of ripple {when}", ripple(tried)))
+            });
+            let _ = write!(
+                self.reason,
+                "; {} of them hold {most:.1} % of the torque with {least:.1} % of ripple {when}, within {TORQUE_ALIKE} and {RIPPLE_ALIKE} points",
+                left.len(),
+            );
+        }
+        left
+    }
+
+    /// Recommends one of those that are alike, by the speed up to which they hold the torque and by their
+    /// operations.
+    fn recommend(&mut self, left: &mut Vec<usize>) {
+        let limit = |tried: &Tried| tried.limit_pct.unwrap_or(0.0);
+        let farthest = self.most(left, &limit);
+        self.keep(left, &|tried| {
+            let ends = limit(tried) < farthest - LIMIT_ALIKE;
+            ends.then(|| {
+                format!(
+                    "holds the torque up to {:.0} % of rated speed",
+                    limit(tried)
+                )
+            })
+        });
+        let operations = |tried: &Tried| tried.operations.unwrap_or(u32::MAX);
+        let fewest = left.iter().min_by_key(|&&k| operations(&self.tried[k]));
+        self.recommended = fewest.copied();
+        let Some(recommended) = self.recommended else {
+            "no variant runs without a trip".clone_into(&mut self.reason);
+            return;
+        };
+        let count = operations(&self.tried[recommended]);
+        let _ = write!(
+            self.reason,
+            "; {} of them hold it up to {farthest:.0} % of rated speed, within {LIMIT_ALIKE} points; of these it takes the fewest operations, {count}",
+            left.len(),
+        );
+        left.retain(|&k| k != recommended);
+        self.keep(left, &|_| {
+            Some("as good, but takes more operations".to_owned())
+        });
+    }
+
+    /// Keeps those that a rule has nothing against, and notes what it has against the others.
+    fn keep(&mut self, left: &mut Vec<usize>, against: &dyn Fn(&Tried) -> Option<String>) {
+        left.retain(|&k| {
+            let tried = &mut self.tried[k];
+            tried.why_not = against(tried);
+            tried.why_not.is_none()
+        });
+    }
+
+    fn most(&self, left: &[usize], of: &dyn Fn(&Tried) -> f64) -> f64 {
+        let values = left.iter().map(|&k| of(&self.tried[k]));
+        values.fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+impl Regret {
+    /// Of the default drive, the first of those that were tried, on the stated motor.
+    fn of(tried: &[Tried]) -> Option<Self> {
+        let worst = tried.iter().map(|tried| Worst::of(&tried.nominal));
+        let worst: Vec<Option<Worst>> = worst.collect();
+        let default = worst.first().copied().flatten()?;
+        let all = worst.iter().flatten();
+        let most = all
+            .clone()
+            .fold(0.0, |most: f64, worst| most.max(worst.torque_pct));
+        let alike = all.filter(|worst| worst.torque_pct >= most - TORQUE_ALIKE);
+        let least = alike.fold(f64::INFINITY, |least, worst| least.min(worst.ripple_pct));
+        Some(Self {
+            torque_pct: most - default.torque_pct,
+            ripple_pct: default.ripple_pct - least,
+        })
+    }
+}
+
+/// What is against a variant that is refused or trips.
+fn works(tried: &Tried) -> Option<String> {
+    if let Some(reason) = &tried.refused {
+        let line = reason.lines().next().unwrap_or_default();
+        let start = line.find("error[").unwrap_or(0);
+        return Some(format!("refused: {}", &line[start..]));
+    }
+    let mut points = tried.nominal.iter().chain(&tried.deviating);
+    let trips = points.find(|point| point.torque_pct.is_none() || point.ripple_pct.is_none())?;
+    Some(match trips.deviation {
+        Some(name) => format!("trips with {name}"),
+        None => format!("trips at {} % of rated speed", trips.speed_pct),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Advice, Point, Regret, Tried};
+
+    fn tried(variant: &'static str, figures: [f64; 2], deviating: [f64; 2], cost: u32) -> Tried {
+        let point = |[torque, ripple]: [f64; 2]| Point {
+            speed_pct: 60,
+            deviation: None,
+            torque_pct: torque.is_finite().then_some(torque),
+            ripple_pct: Some(ripple),
+            copper_w: None,
+            switching_hz: None,
+        };
+        Tried {
+            nominal: vec![point(figures)],
+            deviating: vec![point(deviating)],
+            operations: Some(cost),
+            ..Tried::new(variant)
+        }
+    }
+
+    #[test]
+    fn trips_torque_ripple_and_deviations_count_before_operations() {
+        let mut advice = Advice {
+            motor: String::new(),
+            tried: vec![
+                tried("default", [99.9, 1.0], [99.0, 3.0], 400),
+                tried("trips", [f64::NAN, 0.1], [100.0, 0.1], 10),
+                tried("weak", [97.0, 0.5], [97.0, 0.5], 20),
+                tried("rough", [100.0, 9.0], [100.0, 9.0], 30),
+                tried("touchy", [100.0, 1.0], [100.0, 6.0], 40),
+                tried("lean", [99.5, 2.5], [99.0, 3.5], 300),
+            ],
+            recommended: None,
+            reason: String::new(),
+        };
+        let mut left = advice.alike();
+        assert_eq!(left, [0, 5], "{advice:#?}");
+        advice.recommend(&mut left);
+        assert_eq!(advice.recommended, Some(5), "{advice:#?}");
+        let against = [
+            "more operations",
+            "trips",
+            "97.0 %",
+            "9.0 %",
+            "6.0 % of ripple with deviations",
+        ];
+        for (tried, told) in advice.tried.iter().zip(against) {
+            let why_not = tried.why_not.as_deref().unwrap_or_default();
+            assert!(why_not.contains(told), "{}: {why_not}", tried.variant);
+        }
+        let regret = Regret::of(&advice.tried).expect("the default runs");
+        assert!((regret.torque_pct - 0.1).abs() < 1e-9, "{regret:?}");
+        assert!((regret.ripple_pct - 0.0).abs() < 1e-9, "{regret:?}");
+    }
+}
