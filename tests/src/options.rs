@@ -8,6 +8,7 @@ use crate::library::{Motor, motor};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{KINDS, Rule, Spec, check, parse_toml};
+use std::f64::consts::TAU;
 use toml_edit::{DocumentMut, Item, Table};
 
 /// Setting of an option's value: section, field, TOML value.
@@ -59,6 +60,8 @@ const FADE: &str = "\"fade\"";
 /// A tenth and a twenty-fifth of the ADC's range, which every motor draws and returns more than.
 const DRAWN: &str = "\"drawn\"";
 const RETURNED: &str = "\"returned\"";
+/// Placeholder of 1.25 times the rated speed.
+const OVER_SPEED: &str = "\"over-speed\"";
 
 /// Values rejected by every drive of a kind: kind, option, value.
 const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
@@ -264,6 +267,13 @@ const LOOSE: &[Row] = &[
                     ("inverter", "hall_timer_clock", "\"505 kHz\""),
                 ],
             ),
+        ],
+    ),
+    (
+        "over_speed",
+        &[
+            ("none", &[]),
+            ("watched", &[("inverter", "over_speed", OVER_SPEED)]),
         ],
     ),
     (
@@ -588,7 +598,12 @@ impl Kind {
                 .expect("a TOML value")["x"]
                 .clone()
         };
-        let Supply { bus, range, fade } = Supply::of(&motor.text);
+        let Supply {
+            bus,
+            range,
+            fade,
+            speed,
+        } = Supply::of(&motor.text);
         let volts = |share: f64| text(&format!("\"{} V\"", bus * share));
         let amperes = |share: f64| text(&format!("\"{} A\"", range * share));
         document["controller"] = Item::Table(Table::new());
@@ -600,6 +615,7 @@ impl Kind {
                     FADE => volts(fade),
                     DRAWN => amperes(0.1),
                     RETURNED => amperes(0.04),
+                    OVER_SPEED => text(&format!("\"{} rpm\"", 1.25 * speed)),
                     _ => text(setting),
                 };
             }
@@ -630,7 +646,7 @@ fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
-/// Numbers of a motor file's inverter, of which its board may have written a part.
+/// Numbers of a motor file, of which its board may have written a part.
 struct Supply {
     /// Volt.
     bus: f64,
@@ -638,6 +654,8 @@ struct Supply {
     range: f64,
     /// [`FADE`] over the bus.
     fade: f64,
+    /// Rated, rpm.
+    speed: f64,
 }
 
 impl Supply {
@@ -651,6 +669,7 @@ impl Supply {
             bus: inverter.v_bus,
             range: inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1)),
             fade: if has_board { 0.05 } else { 0.25 },
+            speed: spec.motor.rated_speed * 60.0 / TAU,
         }
     }
 }

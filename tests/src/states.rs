@@ -587,7 +587,7 @@ fn supervisor_ranges(
     let third = sensors.third;
     Supervisor::NAMES.map(|name| match name {
         "mode" | "turn_hall" => (0, 6),
-        "fault" => (0, 9),
+        "fault" => (0, 10),
         "countdown" => (0, samples.max(longest)),
         "sum_a" | "sum_b" => (0, full),
         "offset_a" => ends(0),

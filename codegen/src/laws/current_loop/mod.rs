@@ -189,9 +189,10 @@ impl<'b> CurrentLoop<'_, 'b> {
             outgoing,
         );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
+        let turned = rotor.filter(|_| self.uses_angle());
         self.tell(
             [e, e_now],
-            demand.speed.or(rotor.map(|rotor| rotor.step_angle)),
+            demand.speed.or(turned.map(|rotor| rotor.step_angle)),
         );
         let off_leg = self.off_leg(bus, third);
         let commanded = words.v_cmd.map(read);

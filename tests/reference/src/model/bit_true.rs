@@ -323,6 +323,9 @@ impl<W: Word> BitTrue<W> {
         {
             self.state.supervisor.trip(Fault::Residual);
         }
+        if self.state.timing.is_too_fast() {
+            self.state.supervisor.trip(Fault::OverSpeed);
+        }
         let k = &self.k;
         // 1 measure
         let limits = &self.limits;

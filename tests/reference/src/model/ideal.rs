@@ -279,6 +279,9 @@ impl Ideal {
         if most > 0.0 && self.state.residual_count >= most {
             self.state.supervisor.trip(Fault::Residual);
         }
+        if self.state.timing.is_too_fast() {
+            self.state.supervisor.trip(Fault::OverSpeed);
+        }
         // 1 measure
         let limits = &self.limits;
         let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);

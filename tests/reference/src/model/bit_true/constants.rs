@@ -287,6 +287,7 @@ impl<W: Word> Constants<W> {
                 (Part::Edges, rotor || commutation.is_some() || fades),
                 (Part::Direction, rotor || commutation.is_some() || fades),
                 (Part::Rotor, rotor),
+                (Part::OverSpeed, inverter.over_speed_turn.is_some()),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Slew, variant.options.slew_rate > 0.0),
                 (Part::BusCurrent, limits_bus),

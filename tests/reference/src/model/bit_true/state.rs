@@ -202,6 +202,9 @@ macro_rules! for_each_word {
             $show!("rev", $state.timing.rev);
             $show!("omega", $state.omega);
         }
+        if $parts.has(Part::OverSpeed) {
+            $show!("over_speed_count", $state.timing.too_fast);
+        }
         if $parts.has(Part::Speed) {
             $show!("speed_integral", $state.speed_integral);
         }
