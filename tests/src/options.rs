@@ -313,6 +313,14 @@ const LOOSE: &[Row] = &[
                     ("motor", "inertia", "\"3 kg cm2\""),
                 ],
             ),
+            (
+                "ramped",
+                &[
+                    ("controller", "speed_loop", "\"on\""),
+                    ("controller", "acceleration_limit", "\"20000 rpm/s\""),
+                    ("motor", "inertia", "\"3 kg cm2\""),
+                ],
+            ),
             ("slewed", &[("controller", "slew_rate", "\"500 A/s\"")]),
         ],
     ),

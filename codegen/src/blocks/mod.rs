@@ -17,6 +17,7 @@ mod rotor;
 pub mod set_point;
 mod slew;
 mod speed;
+mod speed_ramp;
 
 pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;

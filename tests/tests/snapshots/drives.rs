@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 25] = [
+const VARIANTS: [(&str, &str, Fields); 26] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -66,6 +66,11 @@ const VARIANTS: [(&str, &str, Fields); 25] = [
     (
         "pdcc.speed-loop",
         "pdcc:reference=quasi_square,speed_loop=on",
+        &[("motor", "inertia", "3 kg cm2")],
+    ),
+    (
+        "pdcc.speed-ramp",
+        "pdcc:reference=quasi_square,speed_loop=on,acceleration_limit=5000 rpm/s",
         &[("motor", "inertia", "3 kg cm2")],
     ),
     (

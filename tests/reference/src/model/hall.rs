@@ -90,6 +90,12 @@ impl<W: Word> HallTiming<W> {
         }
     }
 
+    /// What a ramp of the speed has begun at: 1, or 2 once the speed is known.
+    #[inline]
+    pub fn ramp_known(&self) -> f64 {
+        if self.edges == 2 { 2.0 } else { 1.0 }
+    }
+
     /// Whether the rotor turns too fast.
     #[inline]
     pub fn is_too_fast(&self) -> bool {

@@ -289,6 +289,7 @@ impl<W: Word> Constants<W> {
                 (Part::Rotor, rotor),
                 (Part::OverSpeed, inverter.over_speed_turn.is_some()),
                 (Part::Speed, variant.options.has_speed_loop()),
+                (Part::Ramp, variant.options.acceleration_limit > 0.0),
                 (Part::Slew, variant.options.slew_rate > 0.0),
                 (Part::BusCurrent, limits_bus),
                 (Part::LineCommand, limits_bus && variant.delayed()),

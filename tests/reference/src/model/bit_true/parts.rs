@@ -8,6 +8,7 @@ pub enum Part {
     Rotor,
     OverSpeed,
     Speed,
+    Ramp,
     Slew,
     BusCurrent,
     LineCommand,
