@@ -131,7 +131,7 @@ impl<'b> SpeedRegulator<'b> {
         allowed: Option<Allowed<'b>>,
     ) -> Regulated<'b> {
         let [k_speed, k_share] = self.coefficients(l);
-        let reference = self.words.reference.read();
+        let reference = self.words.reference;
         let ramped = (self.ramp).map(|ramp| ramp.follow(l, rotor, reference));
         l.b.stage(
             "regulate_speed",
@@ -145,9 +145,12 @@ impl<'b> SpeedRegulator<'b> {
             0 => integral,
             extra => integral >> extra,
         };
-        let (wanted, speed) = match ramped {
-            Some(ramped) => (ramped.wanted, ramped.speed),
-            None => (reference, (rotor.direction * rotor.omega).named("speed")),
+        let (speed, wanted) = match ramped {
+            Some(ramped) => (ramped.speed, ramped.wanted),
+            None => {
+                let speed = (rotor.direction * rotor.omega).named("speed");
+                (speed, reference.read())
+            }
         };
         named! {
             let speed_error = (wanted - speed).within(self.greatest_error(l));

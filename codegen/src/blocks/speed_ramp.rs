@@ -5,7 +5,7 @@ use super::slew::approached;
 use super::{Lowering, Rotor};
 use crate::diagnostics::rpm;
 use crate::interface::Rounding;
-use crate::ir::{Exact, Expr, Interval, Memory, Named, Real, named};
+use crate::ir::{Exact, Expr, Interval, Memory, Named, Param, Real, named};
 
 /// Bits of the set-point in force: with a slow ramp a period's step still has several.
 const BITS: u32 = 29;
@@ -73,7 +73,7 @@ impl<'b> SpeedRamp<'b> {
     }
 
     /// The set-point in force, from the set-point.
-    pub fn follow(&self, l: &Lowering<'b>, rotor: &Rotor<'b>, reference: Expr<'b>) -> Ramped<'b> {
+    pub fn follow(&self, l: &Lowering<'b>, rotor: &Rotor<'b>, reference: Param<'b>) -> Ramped<'b> {
         l.b.stage(
             "limit_acceleration",
             &[
@@ -91,7 +91,7 @@ impl<'b> SpeedRamp<'b> {
             let ramp_known = rotor.tracking.choose(2, 1);
             let begins = self.begun.read().is_below(ramp_known);
             let speed_before = begins.choose(shifted(speed), self.in_force.read());
-            let speed_followed = approached(shifted(reference), speed_before, step);
+            let speed_followed = approached(shifted(reference.read()), speed_before, step);
             let ramp_begun_next = self.begun.read().max(ramp_known);
         }
         let wanted = match self.extra {

@@ -34,12 +34,7 @@ fn drive(motor: &str, law: &str, over_speed: impl Fn(&Prepared) -> f64) -> Prepa
 }
 
 /// A closed loop that turns at this speed.
-fn closed<'d>(
-    drive: &'d Prepared,
-    params: PlantParams,
-    omega: f64,
-    share: f64,
-) -> ClosedLoop<Engine<'d>> {
+fn closed(drive: &Prepared, params: PlantParams, omega: f64, share: f64) -> ClosedLoop<Engine<'_>> {
     let plant = Plant::new(params, 0.2, omega).expect("a plant");
     let engine = drive.engine(Model::Fixed, drive.set_point(share * drive.demand()));
     ClosedLoop::new(plant, engine, run_of(&drive.spec, omega, 0.0).delay)
