@@ -145,12 +145,11 @@ impl<'b> SpeedRegulator<'b> {
             0 => integral,
             extra => integral >> extra,
         };
-        let (speed, wanted) = match ramped {
-            Some(ramped) => (ramped.speed, ramped.wanted),
-            None => {
-                let speed = (rotor.direction * rotor.omega).named("speed");
-                (speed, reference.read())
-            }
+        let (speed, wanted) = if let Some(ramped) = ramped {
+            (ramped.speed, ramped.wanted)
+        } else {
+            let speed = (rotor.direction * rotor.omega).named("speed");
+            (speed, reference.read())
         };
         named! {
             let speed_error = (wanted - speed).within(self.greatest_error(l));
