@@ -111,21 +111,22 @@ pub struct Interface {
     /// fixed.
     pub bus_periods: Option<i32>,
     /// Watch of the residual; with a `residual_timeout` only.
-    pub residual: Option<ResidualWatch>,
+    pub residual: Option<Watch>,
+    /// Watch of the speed; with an `over_speed` only.
+    pub over_speed: Option<Watch>,
     /// Limits of samples, and start-up.
     pub limits: Limits,
     /// Units of the observations.
     pub units: Units,
 }
 
-/// Watch of the residual: what the currents are beyond the motor's data.
+/// What a law watches itself: it counts in a state word, and the drive trips at a count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ResidualWatch {
-    /// Name of the state word that counts the periods in which they did not follow the voltages, less
-    /// those in which they did.
+pub struct Watch {
+    /// Name of the state word.
     pub word: &'static str,
     /// Count at which the drive trips.
-    pub periods: i32,
+    pub most: i32,
 }
 
 /// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits. Of

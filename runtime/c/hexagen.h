@@ -160,6 +160,11 @@ typedef enum {
      */
     HEXAGEN_FAULT_RESIDUAL = 8,
     /**
+     * Over seven Hall edges in a row the rotor turned faster than `over_speed`: a shaft that is driven,
+     * a load that was lost, or a speed loop with wrong gains.
+     */
+    HEXAGEN_FAULT_OVER_SPEED = 10,
+    /**
      * The currents of three sensors did not add up in so many samples in a row as the specification
      * says, `current_sum_samples`: a dead or wrong sensor, or a current that leaves the motor.
      */
@@ -555,8 +560,8 @@ typedef struct {
  * The supervisor of a drive: mode, first fault, offsets of the current ADCs.
  *
  * It trips on what samples show: a current above the trip level (but in calibration), a current ADC
- * at an end of its range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
- * `set_bus` tells. It cannot see the following; where an option helps, it is named:
+ * at an end of its range, an invalid Hall code, and where told to, a rotor that stands or turns too fast; and on a
+ * bus voltage that `set_bus` tells. It cannot see the following; where an option helps, it is named:
  *
  * - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
  *   mid-scale can let the true current rise to several times the trip level. The option

@@ -89,6 +89,10 @@ pub trait Control: Sized + 'static {
     /// `residual_timeout`. The macro sets it with that option.
     const HAS_LOST_CURRENTS: Option<fn(&Self::State) -> bool> = None;
 
+    /// Tells from the law's state that the rotor turns faster than `over_speed`. The macro sets it with
+    /// that field.
+    const IS_TOO_FAST: Option<fn(&Self::State) -> bool> = None;
+
     /// Set-point word of a current: bits of a number with 16 fraction bits, ampere.
     fn current(bits: Word) -> Word;
     /// Set-point word of a torque: bits of a number with 16 fraction bits, newton metres.

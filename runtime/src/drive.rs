@@ -207,6 +207,11 @@ impl<C: Control> ControlLoop<'_, C> {
         {
             trip(set_point, core, *sample, Fault::Residual);
         }
+        if let Some(is_too_fast) = C::IS_TOO_FAST
+            && is_too_fast(&core.law)
+        {
+            trip(set_point, core, *sample, Fault::OverSpeed);
+        }
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
         let checked = match core.supervisor.check(limits, sensors, sample, is_demanded) {

@@ -55,6 +55,9 @@ pub enum Fault {
     /// The currents did not follow the voltages for the `residual_timeout` longer than they did: a dead
     /// current sensor, an open or exchanged phase, a sensor's wrong sign, or wrong motor data.
     Residual = 8,
+    /// Over seven Hall edges in a row the rotor turned faster than `over_speed`: a shaft that is driven,
+    /// a load that was lost, or a speed loop with wrong gains.
+    OverSpeed = 10,
     /// A current ADC was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,
     /// The Hall code was one that no sensors give (000, 111 or above; with sensors 60 degrees apart 010
@@ -86,6 +89,7 @@ impl Fault {
             7 => Some(Self::UnderVoltage),
             8 => Some(Self::Residual),
             9 => Some(Self::CurrentSum),
+            10 => Some(Self::OverSpeed),
             _ => None,
         }
     }
@@ -99,6 +103,7 @@ impl fmt::Display for Fault {
             Self::OverVoltage => "the bus voltage is too high",
             Self::UnderVoltage => "the bus voltage is too low",
             Self::Residual => "the currents do not follow the voltages",
+            Self::OverSpeed => "the rotor turns too fast",
             Self::Hall => "the Hall code is invalid",
             Self::CurrentSum => "the phase currents do not add up",
             Self::Stall => "the rotor is stalled",
@@ -173,7 +178,7 @@ mod tests {
         for number in 0..7 {
             let mode = Mode::from_number(number);
             assert_eq!(mode as i32, number);
-            for number in 0..9 {
+            for number in 0..=10 {
                 let fault = Fault::from_number(number);
                 for glitches in [0, 1, MOST_GLITCHES] {
                     let bits = Status::to_bits(mode, fault, glitches);
@@ -190,7 +195,7 @@ mod tests {
     fn a_fault_has_an_error_message() {
         let error: &dyn core::error::Error = &Fault::Hall;
         assert!(error.source().is_none());
-        for number in 1..=8 {
+        for number in 1..=10 {
             assert!(Fault::from_number(number).is_some_and(|fault| fault as i32 == number));
         }
     }

@@ -445,9 +445,9 @@ const fn is_hall_code(hall: u8) -> bool {
 /// # What the supervisor cannot see
 ///
 /// It trips on what samples show: a current above the trip level (but in calibration), a current ADC
-/// at an end of its range, an invalid Hall code, and where told to, a rotor that stands; and on a bus voltage that
-/// [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see the following; where an option helps, it
-/// is named:
+/// at an end of its range, an invalid Hall code, and where told to, a rotor that stands or turns too
+/// fast; and on a bus voltage that [`set_bus`](crate::SetPoint::set_bus) tells. It cannot see the
+/// following; where an option helps, it is named:
 ///
 /// - a current ADC or amplifier that is stuck or wrong within its range: one that is frozen at
 ///   mid-scale can let the true current rise to several times the trip level. The option

@@ -8,6 +8,7 @@ use crate::library::{Motor, motor};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{KINDS, Rule, Spec, check, parse_toml};
+use std::f64::consts::TAU;
 use toml_edit::{DocumentMut, Item, Table};
 
 /// Setting of an option's value: section, field, TOML value.
@@ -59,6 +60,8 @@ const FADE: &str = "\"fade\"";
 /// A tenth and a twenty-fifth of the ADC's range, which every motor draws and returns more than.
 const DRAWN: &str = "\"drawn\"";
 const RETURNED: &str = "\"returned\"";
+/// Placeholder of 1.25 times the rated speed.
+const OVER_SPEED: &str = "\"over-speed\"";
 
 /// Values rejected by every drive of a kind: kind, option, value.
 const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
@@ -267,6 +270,13 @@ const LOOSE: &[Row] = &[
         ],
     ),
     (
+        "over_speed",
+        &[
+            ("none", &[]),
+            ("watched", &[("inverter", "over_speed", OVER_SPEED)]),
+        ],
+    ),
+    (
         "halls",
         &[
             ("plain", &[]),
@@ -323,6 +333,14 @@ const LOOSE: &[Row] = &[
                 "on",
                 &[
                     ("controller", "speed_loop", "\"on\""),
+                    ("motor", "inertia", "\"3 kg cm2\""),
+                ],
+            ),
+            (
+                "ramped",
+                &[
+                    ("controller", "speed_loop", "\"on\""),
+                    ("controller", "acceleration_limit", "\"20000 rpm/s\""),
                     ("motor", "inertia", "\"3 kg cm2\""),
                 ],
             ),
@@ -611,7 +629,12 @@ impl Kind {
                 .expect("a TOML value")["x"]
                 .clone()
         };
-        let Supply { bus, range, fade } = Supply::of(&motor.text);
+        let Supply {
+            bus,
+            range,
+            fade,
+            speed,
+        } = Supply::of(&motor.text);
         let volts = |share: f64| text(&format!("\"{} V\"", bus * share));
         let amperes = |share: f64| text(&format!("\"{} A\"", range * share));
         document["controller"] = Item::Table(Table::new());
@@ -623,6 +646,7 @@ impl Kind {
                     FADE => volts(fade),
                     DRAWN => amperes(0.1),
                     RETURNED => amperes(0.04),
+                    OVER_SPEED => text(&format!("\"{} rpm\"", 1.25 * speed)),
                     _ => text(setting),
                 };
             }
@@ -653,7 +677,7 @@ fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
-/// Numbers of a motor file's inverter, of which its board may have written a part.
+/// Numbers of a motor file, of which its board may have written a part.
 struct Supply {
     /// Volt.
     bus: f64,
@@ -661,6 +685,8 @@ struct Supply {
     range: f64,
     /// [`FADE`] over the bus.
     fade: f64,
+    /// Rated, rpm.
+    speed: f64,
 }
 
 impl Supply {
@@ -674,6 +700,7 @@ impl Supply {
             bus: inverter.v_bus,
             range: inverter.adc_gain.abs() * f64::from(1_u32 << (inverter.adc_bits - 1)),
             fade: if has_board { 0.05 } else { 0.25 },
+            speed: spec.motor.rated_speed * 60.0 / TAU,
         }
     }
 }

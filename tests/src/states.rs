@@ -42,6 +42,7 @@ pub struct States<'a> {
     /// Ticks of the Hall timer per period.
     ticks: i32,
     timer: bool,
+    over_speed_turn: Option<i32>,
     /// Bus voltage, volt.
     v_bus: f64,
 }
@@ -90,6 +91,7 @@ impl<'a> States<'a> {
             age_max: inverter.age_max,
             ticks: inverter.ticks as i32,
             timer: inverter.hall_capture == HallCapture::Timer,
+            over_speed_turn: inverter.over_speed_turn.map(|ticks| ticks as i32),
             v_bus: inverter.v_bus,
         }
     }
@@ -213,6 +215,7 @@ impl<'a> States<'a> {
         match self.random.u8(..16) {
             0 | 1 => self.take_half_a_turn(words, sample),
             2 => self.end_sector(words),
+            3 => self.end_turn(words, sample),
             _ => {}
         }
         self.respect_invariants(words);
@@ -232,16 +235,32 @@ impl<'a> States<'a> {
         };
         // Six equal intervals, the last of which takes the remainder.
         let last = age.saturating_mul(3) - 5 * (age / 2) + self.random.i32(-1..=1);
-        for (name, interval) in [
-            ("t1", age / 2),
-            ("t2", age / 2),
-            ("t3", age / 2),
-            ("t4", age / 2),
-            ("t5", age / 2),
-            ("t6", last),
-        ] {
+        self.set_intervals(words, age / 2, last);
+    }
+
+    /// A rotor at about the over-speed at the sample's edge, if it has one.
+    fn end_turn(&mut self, words: &mut [i32], sample: Sample) {
+        let (Some(turn), Some(place)) = (self.over_speed_turn, self.place("age_prev")) else {
+            return;
+        };
+        let each = turn / 6;
+        self.set_intervals(words, each, each);
+        let age = match i32::from(sample.ticks()) {
+            _ if !self.timer => 1,
+            ticks if ticks > 2 * self.ticks => 0,
+            ticks => ticks,
+        };
+        let (low, high) = self.ranges[place];
+        let interval = turn - 5 * each + self.random.i32(-1..=1);
+        words[place] = (interval + age - self.ticks).clamp(low, high);
+    }
+
+    /// Five equal intervals, and the oldest one.
+    fn set_intervals(&self, words: &mut [i32], each: i32, last: i32) {
+        for name in ["t1", "t2", "t3", "t4", "t5", "t6"] {
             if let Some(place) = self.place(name) {
                 let (low, high) = self.ranges[place];
+                let interval = if name == "t6" { last } else { each };
                 words[place] = interval.clamp(low, high);
             }
         }
@@ -587,7 +606,7 @@ fn supervisor_ranges(
     let third = sensors.third;
     Supervisor::NAMES.map(|name| match name {
         "mode" | "turn_hall" => (0, 6),
-        "fault" => (0, 9),
+        "fault" => (0, 10),
         "countdown" => (0, samples.max(longest)),
         "sum_a" | "sum_b" => (0, full),
         "offset_a" => ends(0),

@@ -4,7 +4,9 @@
 //! Many survivors are equivalent: padding of tables, limits that cannot act, ties that lead to the
 //! same vector. So the score is less than 100 %, and must not fall.
 
+use hexagen_codegen::interface::Watch;
 use hexagen_codegen::ir::{Op, Program};
+use hexagen_codegen::pipeline::Generated;
 use hexagen_tests::faults::{DRIVES, Fault, LEAST_NOTICED, faults, wrong_limits};
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_record, record_states};
 use hexagen_tests::options::{Drive, generate_toml};
@@ -103,4 +105,37 @@ fn every_wrong_limit_is_detected() {
     println!("{planted} wrong limits");
     assert!(planted > 15 * DRIVES.len(), "{planted}");
     assert!(unnoticed.is_empty(), "{}", unnoticed.join("\n"));
+}
+
+/// A drive whose speed is watched, of edges that a timer counts.
+const WATCHED: Drive = Drive {
+    kind: "pdcc",
+    motor: "hurst-long",
+    settings: &[("over_speed", "watched"), ("hall_capture", "timer")],
+};
+
+#[test]
+fn a_wrong_over_speed_is_detected() {
+    let (_, sound) = generate_toml(&WATCHED.toml(None)).expect("the drive generates");
+    let record = record_states(&sound, STEPS, 1).expect("the drive has a model");
+    let is_noticed = |drive: &Generated, program: &Program| {
+        compare_record(drive, program, &record).is_err()
+            || compare(drive, program, STEPS, 1).is_err()
+    };
+    assert!(
+        !is_noticed(&sound, sound.graph.program()),
+        "without a fault"
+    );
+    let watch = sound.interface.over_speed.expect("a watch");
+    for most in [watch.most - 1, watch.most + 1] {
+        let mut faulty = sound.clone();
+        faulty.interface.over_speed = Some(Watch { most, ..watch });
+        assert!(is_noticed(&faulty, sound.graph.program()), "{most} edges");
+    }
+    let of_speed = |fault: &Fault| fault.name().contains("over_speed");
+    let planted: Vec<Fault> = faults(sound.graph.program()).filter(of_speed).collect();
+    assert!(planted.len() > 2, "{} faults", planted.len());
+    for fault in planted {
+        assert!(is_noticed(&sound, &fault.program), "{}", fault.name());
+    }
 }

@@ -12,10 +12,12 @@ mod limit;
 mod measure;
 mod modulate;
 mod number;
+mod over_speed;
 mod rotor;
 pub mod set_point;
 mod slew;
 mod speed;
+mod speed_ramp;
 
 pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;
@@ -33,6 +35,7 @@ pub use modulate::{
 };
 use number::round_half_up;
 pub use number::{product_bound, round_down};
+pub use over_speed::{OVER_SPEED_COUNT, OVER_SPEED_EDGES};
 pub use rotor::{Rotor, RotorWords, advanced_sector, direction_word, sense_direction};
 pub use slew::SlewLimit;
 pub use speed::{Regulated, SpeedRegulator};

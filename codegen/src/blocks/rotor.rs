@@ -4,6 +4,7 @@ use super::Lowering;
 use super::commutation::CommutationRule;
 use super::measure::Hall;
 use super::number::round_half_up;
+use super::over_speed::OverSpeedWatch;
 use crate::diagnostics::significant;
 use crate::interface::Rounding;
 use crate::ir::{Exact, Expr, Flag, Interval, Memory, Named, Real, named};
@@ -75,6 +76,7 @@ pub struct RotorWords<'b> {
     intervals: [Memory<'b>; 6],
     rev: Memory<'b>,
     omega: Memory<'b>,
+    over_speed: Option<OverSpeedWatch<'b>>,
 }
 
 /// Angle and speed at this sample.
@@ -233,6 +235,7 @@ impl<'b> RotorWords<'b> {
                 omega_max,
                 "Electrical angle per tick, 2^32 a turn; 0 while unknown.",
             ),
+            over_speed: OverSpeedWatch::new(l),
         }
     }
 
@@ -307,6 +310,7 @@ impl<'b> RotorWords<'b> {
         named! {
             let rev_seen = turn(l, seen);
         }
+        let over = (self.over_speed).map(|watch| watch.seen(l, edges_counted.is(2), rev_seen));
         let doc = "Ticks of an electrical turn at the greatest speed.";
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over();
@@ -323,6 +327,7 @@ impl<'b> RotorWords<'b> {
         self.age_prev.set(age);
         self.rev.set(rev);
         self.keep_intervals(l, seen, intervals);
+        self.keep_count(l, over);
         Edges {
             direction,
             counted,
@@ -338,6 +343,13 @@ impl<'b> RotorWords<'b> {
             let name = format!("{}_next", INTERVALS[k]);
             let [next] = l.b.join([(&*name, seen[k], old[k])]);
             word.set(next);
+        }
+    }
+
+    /// The same of the over-speed's count.
+    fn keep_count(&self, l: &Lowering<'b>, seen: Option<Expr<'b>>) {
+        if let (Some(watch), Some(seen)) = (self.over_speed, seen) {
+            watch.keep(l, seen);
         }
     }
 

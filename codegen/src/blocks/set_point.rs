@@ -31,6 +31,8 @@ pub struct SetPointWords<'b> {
 pub struct SpeedWords<'b> {
     /// Speed set-point, in words of `omega`.
     pub reference: Param<'b>,
+    /// Its greatest value.
+    pub most: i64,
 }
 
 /// Words of a measured bus.
@@ -141,7 +143,7 @@ impl<'b> SetPointWords<'b> {
             let doc = "Speed set-point, electrical angle per tick, 2^32 a turn.";
             let range = Interval::symmetric(most);
             let reference = l.b.param(Demand::Speed, "speed_ref", 0, range, doc);
-            SpeedWords { reference }
+            SpeedWords { reference, most }
         });
         Self {
             j,

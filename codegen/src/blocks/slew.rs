@@ -23,6 +23,11 @@ pub struct SlewLimit<'b> {
     gain: f64,
 }
 
+/// A word that approaches a goal by at most a step.
+pub(super) fn approached<'b>(goal: Expr<'b>, before: Expr<'b>, step: Expr<'b>) -> Expr<'b> {
+    goal.max(before - step).min(before + step)
+}
+
 impl<'b> SlewLimit<'b> {
     /// Declares the word; `rate` in A/s.
     pub fn new(l: &Lowering<'b>, rate: f64, set_point: &SetPointWords<'b>) -> Self {
@@ -63,7 +68,7 @@ impl<'b> SlewLimit<'b> {
             extra => (j << extra, Some(extra)),
         };
         named! {
-            let j_followed = goal.max(in_force - step).min(in_force + step);
+            let j_followed = approached(goal, in_force, step);
         }
         let j_slewed = whole.map_or(j_followed, |extra| j_followed >> extra);
         (j_slewed.named("j_slewed"), (self.in_force, j_followed))

@@ -2,6 +2,7 @@
 
 use super::rotor::speed_word;
 use super::set_point::{SetPointWords, SpeedWords};
+use super::speed_ramp::SpeedRamp;
 use super::{Allowed, Lowering, Rotor, round_down};
 use crate::diagnostics::{engineering, significant};
 use crate::ir::{Coefficient, Exact, Expr, Interval, Memory, Named, Real, named};
@@ -21,6 +22,7 @@ pub struct SpeedRegulator<'b> {
     /// Fraction bits of the integral beyond those of voltages.
     extra: u32,
     words: SpeedWords<'b>,
+    ramp: Option<SpeedRamp<'b>>,
     /// The greatest set-point word.
     top: i64,
     /// The set-point's gain, V/A.
@@ -28,14 +30,14 @@ pub struct SpeedRegulator<'b> {
 }
 
 /// Results of the regulator.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Regulated<'b> {
     /// The regulated current set-point, words of voltage.
     pub j: Expr<'b>,
     /// The speed, signed, words of speed.
     pub speed: Expr<'b>,
-    /// The integral's state word and its new value.
-    pub integral: (Memory<'b>, Expr<'b>),
+    /// State words of integral and ramp, and their new values.
+    pub words: Vec<(Memory<'b>, Expr<'b>)>,
 }
 
 impl<'b> SpeedRegulator<'b> {
@@ -53,11 +55,15 @@ impl<'b> SpeedRegulator<'b> {
         let range = Interval::symmetric(top << extra);
         let doc =
             "Integral of the speed regulator, words of voltage with additional fraction bits.";
+        let integral = l.b.memory("speed_integral", 0, range, doc);
+        let limit = options.acceleration_limit;
+        let ramp = limit.map(|limit| SpeedRamp::new(l, limit, words.most));
         Self {
             options,
-            integral: l.b.memory("speed_integral", 0, range, doc),
+            integral,
             extra,
             words,
+            ramp,
             top,
             stiffness: set_point.gain.value,
         }
@@ -125,6 +131,8 @@ impl<'b> SpeedRegulator<'b> {
         allowed: Option<Allowed<'b>>,
     ) -> Regulated<'b> {
         let [k_speed, k_share] = self.coefficients(l);
+        let reference = self.words.reference;
+        let ramped = (self.ramp).map(|ramp| ramp.follow(l, rotor, reference));
         l.b.stage(
             "regulate_speed",
             &[
@@ -137,9 +145,14 @@ impl<'b> SpeedRegulator<'b> {
             0 => integral,
             extra => integral >> extra,
         };
+        let (speed, wanted) = if let Some(ramped) = ramped {
+            (ramped.speed, ramped.wanted)
+        } else {
+            let speed = (rotor.direction * rotor.omega).named("speed");
+            (speed, reference.read())
+        };
         named! {
-            let speed = rotor.direction * rotor.omega;
-            let speed_error = (self.words.reference.read() - speed).within(self.greatest_error(l));
+            let speed_error = (wanted - speed).within(self.greatest_error(l));
             let speed_part = k_speed * speed_error;
             let j_open = speed_part + whole;
             let j_most = most.abs();
@@ -154,10 +167,12 @@ impl<'b> SpeedRegulator<'b> {
         named! {
             let speed_integral_moved = moved.within(self.greatest_integral(l));
         }
+        let mut words = vec![(self.integral, speed_integral_moved)];
+        words.extend(ramped.map(|ramped| ramped.words).into_iter().flatten());
         Regulated {
             j: j_regulated,
             speed,
-            integral: (self.integral, speed_integral_moved),
+            words,
         }
     }
 }

@@ -127,6 +127,8 @@ codes! {
     SensedPhases = 321,
     /// Gains of two current sensors that differ too much.
     UnlikeGains = 322,
+    /// An over-speed that a run at rated speed may reach, or that is not measured.
+    OverSpeed = 323,
     /// A bus voltage that the board is not made for.
     OutsideOfBoard = 330,
     /// A controller that does not exist.

@@ -298,6 +298,12 @@ impl Code {
                 "bus_voltage = \"48 V\"\nmaximum_speed = \"3000 rpm\"",
                 "Raise the PWM frequency or lower maximum_speed.",
             ),
+            Self::OverSpeed => say(
+                "A turn of the rotor is measured to a control period. The over-speed is so far above the rated speed that a measurement of that never shows it, and so low that sectors are seen one by one when the rotor gets there.",
+                "bus_voltage = \"48 V\"\nover_speed = \"1900 rpm\"",
+                "bus_voltage = \"48 V\"\nover_speed = \"2600 rpm\"",
+                "State the speed that the mechanics bear, above every set-point and what it overshoots.",
+            ),
             Self::BusMeasurement => say(
                 "The limits of a measured bus lie on either side of the nominal voltage, inside the ADC's range.",
                 "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"50 V\"\nbus_voltage = \"48 V\"",

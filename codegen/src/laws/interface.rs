@@ -5,12 +5,12 @@ use super::accuracy::accuracy_notes;
 use super::constants::{constants, ratios};
 use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
-use crate::blocks::Scale;
+use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale};
 use crate::design::Envelope;
 use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
-    Interface, Limits, OptionEntry, PublicConstant, ResidualWatch, SensedPhases, Sensor, Sensors,
-    ThirdSensor, Unit, Units,
+    Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors, ThirdSensor,
+    Unit, Units, Watch,
 };
 use crate::scaling::Scaled;
 use crate::spec::{self, CurrentSensing, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
@@ -37,9 +37,13 @@ pub fn interface(
         delay: spec.controller.common().delay,
         timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
         bus_periods: inverter.bus_periods().map(|periods| periods as i32),
-        residual: (spec.controller.common().residual_periods).map(|periods| ResidualWatch {
+        residual: (spec.controller.common().residual_periods).map(|periods| Watch {
             word: RESIDUAL_COUNT,
-            periods: periods as i32,
+            most: periods as i32,
+        }),
+        over_speed: inverter.over_speed.map(|_| Watch {
+            word: OVER_SPEED_COUNT,
+            most: OVER_SPEED_EDGES,
         }),
         limits: limits(spec, scaled.scale),
         units: units(spec, scaled.scale),

@@ -2,13 +2,14 @@
 
 use super::current_loop::{Allowance, LoopDesign};
 use super::start::start_rpm;
+use crate::blocks::OVER_SPEED_EDGES;
 use crate::design::vectors::SECTOR_CURRENT;
-use crate::diagnostics::{engineering, frequency, rpm, significant};
+use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
 use crate::spec::{
     BusCurrents, BusSource, CurrentSensor, CurrentSum, HallCapture, InverterSpec, SensedPhases,
     Spec,
 };
-use std::f64::consts::FRAC_PI_3;
+use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Conducting pairs of sectors S1 to S6 at a positive set-point: phase in, phase out.
 fn pairs() -> [String; 6] {
@@ -177,6 +178,7 @@ fn trips(spec: &Spec) -> Vec<String> {
             format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
         }
     });
+    lines.extend(over_speed(spec));
     if inverter.hall_glitches > 0 {
         lines.push(format!(
             "A disturbed Hall code is bridged for {} samples in a row, and trips it then.",
@@ -184,6 +186,26 @@ fn trips(spec: &Spec) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// The speed that trips the drive, and how well it is measured.
+fn over_speed(spec: &Spec) -> Option<String> {
+    let InverterSpec {
+        over_speed, t_s, ..
+    } = spec.inverter;
+    let speed = over_speed?;
+    let turn = TAU / (speed * f64::from(spec.motor.pole_pairs));
+    let unsure = match spec.inverter.hall_capture {
+        HallCapture::Sampled => format!(
+            ", where a turn is measured to a control period, {}",
+            percent(t_s / turn)
+        ),
+        HallCapture::Timer { .. } => String::new(),
+    };
+    Some(format!(
+        "So do {OVER_SPEED_EDGES} Hall edges in a row at which the last electrical turn was faster than {}{unsure}.",
+        rpm(speed)
+    ))
 }
 
 /// What `brake()` does, by the speed.

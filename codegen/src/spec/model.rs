@@ -44,6 +44,13 @@ impl Spec {
         (self.ticks_per_second() * TAU / omega_e).floor().max(12.0) as u32
     }
 
+    /// Ticks of an electrical turn at the speed above which the drive trips: a turn of fewer is too short.
+    pub fn over_speed_turn(&self) -> Option<u32> {
+        let omega_e = self.inverter.over_speed? * f64::from(self.motor.pole_pairs);
+        // Decimal units may round a whole number.
+        Some((self.ticks_per_second() * TAU / omega_e - 1e-6).ceil() as u32)
+    }
+
     /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
     /// than the largest current. 0 if it never takes more.
     pub fn brake_periods(&self) -> u32 {
@@ -358,6 +365,8 @@ pub struct InverterSpec {
     pub minimum_speed: f64,
     /// Greatest mechanical speed, rad/s.
     pub maximum_speed: f64,
+    /// Mechanical speed above which the drive trips, rad/s; none: it is not watched.
+    pub over_speed: Option<f64>,
     /// Periods without a Hall edge, under current demand, that count as a stall; 0 switches it off.
     pub stall_periods: u32,
     /// Samples in a row with a disturbed Hall code that are bridged; 0 for none.

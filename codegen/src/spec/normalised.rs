@@ -108,6 +108,9 @@ impl Spec {
         text.number("age_max", self.age_max());
         text.number("rev_min", self.rev_min());
         text.number("omega_max", inverter.maximum_speed);
+        if let Some(turn) = self.over_speed_turn() {
+            text.number("over_speed_turn", turn);
+        }
         text.number("stall_periods", inverter.stall_periods);
         if inverter.hall_glitches > 0 {
             text.number("hall_glitches", inverter.hall_glitches);
@@ -255,6 +258,7 @@ mod tests {
                 hall_capture: HallCapture::Timer { ticks: 37.5 },
                 minimum_speed: 4.0,
                 maximum_speed: 314.0,
+                over_speed: None,
                 stall_periods: 0,
                 hall_glitches: 0,
                 calibration_log2: 8,

@@ -139,6 +139,7 @@ pub(crate) const INVERTER: &[Rule] = &[
         "40 rpm",
     ),
     quantity("maximum_speed", &[D::Speed], RPM, 3e5 * RPM, "3000 rpm"),
+    quantity("over_speed", &[D::Speed], RPM, 3e5 * RPM, "2600 rpm"),
     quantity("stall_timeout", &[D::Time], 0.0, 60.0, "500 ms"),
     integer("hall_glitches", 0, 1000, "3"),
     integer("calibration_samples", 1, 4096, "256"),

@@ -2,7 +2,7 @@
 
 use crate::{Inputs, limits, sensors};
 use hexagen::{Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
-use hexagen_codegen::interface::{Interface, ResidualWatch};
+use hexagen_codegen::interface::{Interface, Watch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
@@ -20,8 +20,8 @@ pub struct Interpreted<'g> {
     limits: Limits,
     sensors: Sensors,
     bus: Option<BusWatch>,
-    /// Index of the residual watch's state word, and the count at which it trips.
-    residual: Option<(usize, i32)>,
+    /// What the law watches itself: index of its state word, the count at which it trips, its fault.
+    watches: [Option<(usize, i32, Fault)>; 2],
     places: Places,
     escape: Arc<OnceLock<Escape>>,
 }
@@ -105,9 +105,14 @@ impl<'g> Interpreted<'g> {
                 left: 0,
                 periods,
             }),
-            residual: interface.residual.map(|ResidualWatch { word, periods }| {
+            watches: [
+                (interface.residual, Fault::Residual),
+                (interface.over_speed, Fault::OverSpeed),
+            ]
+            .map(|(watch, fault)| {
+                let Watch { word, most } = watch?;
                 let place = program.states.iter().position(|state| state.name == word);
-                (place.expect("the word of the residual watch"), periods)
+                Some((place.expect("the word of a watch"), most, fault))
             }),
             places: Places::of(program).expect("the program of a drive"),
             escape: Arc::default(),
@@ -191,10 +196,10 @@ impl Subject for Interpreted<'_> {
         if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
             self.supervisor.trip(fault);
         }
-        if let Some((place, periods)) = self.residual
-            && self.machine.state[place] >= periods
-        {
-            self.supervisor.trip(Fault::Residual);
+        for (place, most, fault) in self.watches.into_iter().flatten() {
+            if self.machine.state[place] >= most {
+                self.supervisor.trip(fault);
+            }
         }
         self.try_step(sample).unwrap_or_else(|escape| {
             self.escape.get_or_init(|| escape);

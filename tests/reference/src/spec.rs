@@ -184,6 +184,8 @@ pub struct Inverter {
     pub rev_min: u32,
     /// Greatest mechanical speed, rad/s.
     pub omega_max: f64,
+    /// Ticks of an electrical turn at the over-speed; none: the speed is not watched.
+    pub over_speed_turn: Option<u32>,
     /// Periods without a Hall edge that count as a stall; 0 without stall detection.
     pub stall_periods: u32,
     /// Samples in a row with a disturbed Hall code that are bridged.

@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 24] = [
+const VARIANTS: [(&str, &str, Fields); 26] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -69,6 +69,11 @@ const VARIANTS: [(&str, &str, Fields); 24] = [
         &[("motor", "inertia", "3 kg cm2")],
     ),
     (
+        "pdcc.speed-ramp",
+        "pdcc:reference=quasi_square,speed_loop=on,acceleration_limit=5000 rpm/s",
+        &[("motor", "inertia", "3 kg cm2")],
+    ),
+    (
         "pdcc.fades",
         "pdcc",
         &[
@@ -105,6 +110,11 @@ const VARIANTS: [(&str, &str, Fields); 24] = [
             "hall_angles",
             "[-26 deg, 30 deg, 90 deg, 150 deg, 214 deg, 270 deg]",
         )],
+    ),
+    (
+        "pdcc.over-speed",
+        "pdcc:reference=quasi_square,emf=estimated",
+        &[("inverter", "over_speed", "2600 rpm")],
     ),
     (
         "fcs-mpc.all",

@@ -156,6 +156,26 @@ pub fn too_few_periods(
     )
 }
 
+/// An over-speed that a run at rated speed may reach, or that is not measured. `range`: the least and the
+/// greatest that is accepted, rad/s.
+pub fn over_speed(speed: &Part, rated: &Part, period: &Part, range: [f64; 2]) -> Diagnostic {
+    let [least, fastest] = range;
+    with_parts(
+        Diagnostic::new(
+            Code::OverSpeed,
+            &speed.location,
+            format!(
+                "`over_speed`: {} lies outside {}, where a turn is a control period shorter than at `rated_speed` {}, to {}, beyond which a sector may pass unseen; give a speed within, or raise `f_pwm`",
+                speed.given,
+                rpm_at_least(least),
+                rated.given,
+                rpm_at_most(fastest),
+            ),
+        ),
+        &[rated, period],
+    )
+}
+
 /// The dead time exceeds a tenth of the control period.
 pub fn dead_time(dead_time: &Part, t_s: f64) -> Diagnostic {
     Diagnostic::new(

@@ -5,7 +5,7 @@ use super::layout::{INDENT, wrapped};
 use super::limits::limits_of;
 use super::names::{Names, number, typed_number};
 use crate::emit::path::SINGLE;
-use crate::interface::{Interface, ResidualWatch, Unit};
+use crate::interface::{Interface, Unit, Watch};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
@@ -248,9 +248,20 @@ impl Drive<'_> {
         )
     }
 
-    /// The trip for what no sample shows: a bus voltage, or lost currents; empty without either.
+    /// What the law watches itself, with its fault.
+    fn watches(&self) -> impl Iterator<Item = (Watch, &'static str)> {
+        let Interface {
+            residual,
+            over_speed,
+            ..
+        } = *self.interface;
+        let watches = [(residual, "RESIDUAL"), (over_speed, "OVER_SPEED")].into_iter();
+        watches.filter_map(|(watch, fault)| Some((watch?, fault)))
+    }
+
+    /// The trip for what no sample shows: a bus voltage, or what the law watches; empty without either.
     fn trip_unsampled(&self) -> String {
-        if !self.has_bus() && self.interface.residual.is_none() {
+        if !self.has_bus() && self.watches().next().is_none() {
             return String::new();
         }
         let inner = INDENT.repeat(2);
@@ -334,11 +345,11 @@ impl Drive<'_> {
                 "{inner}trip_unsampled(drive, sample, fault);\n{INDENT}}}\n"
             );
         }
-        if let Some(ResidualWatch { word, periods }) = self.interface.residual {
+        for (Watch { word, most }, fault) in self.watches() {
             let word = self.names.local(word);
             body.push_str(&lines(&[
-                &format!("if (drive->state.{word} >= {}) {{", typed_number(periods)),
-                &format!("{INDENT}trip_unsampled(drive, sample, HEXAGEN_FAULT_RESIDUAL);"),
+                &format!("if (drive->state.{word} >= {}) {{", typed_number(most)),
+                &format!("{INDENT}trip_unsampled(drive, sample, HEXAGEN_FAULT_{fault});"),
                 "}",
             ]));
         }

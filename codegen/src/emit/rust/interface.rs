@@ -5,8 +5,8 @@ use super::imports::unsettled;
 use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};
 use crate::interface::{
-    FormatEntry, Interface, Limits, PublicConstant, PublicValue, ResidualWatch, Rounding,
-    SensedPhases, Sensor, Sensors, ThirdSensor, Unit,
+    FormatEntry, Interface, Limits, PublicConstant, PublicValue, Rounding, SensedPhases, Sensor,
+    Sensors, ThirdSensor, Unit, Watch,
 };
 use crate::ir::{Demand, Program, Setter};
 
@@ -62,6 +62,7 @@ impl Types<'_> {
             spec_toml,
             formats,
             residual,
+            over_speed,
             limits,
             units,
             ..
@@ -73,12 +74,16 @@ impl Types<'_> {
             quote!(const SENSORS: Sensors = #sensors;)
         });
         let limits = limits_of(limits);
-        let residual = residual.map(|ResidualWatch { word, periods }| {
-            let (word, periods) = (snake(word), number(i64::from(periods)));
-            quote! {
-                const HAS_LOST_CURRENTS: Option<fn(&State) -> bool> = Some(|state| state.#word >= #periods);
-            }
-        });
+        let watch = |name: Source, watch: Option<Watch>| {
+            watch.map(|Watch { word, most }| {
+                let (word, most) = (snake(word), number(i64::from(most)));
+                quote! {
+                    const #name: Option<fn(&State) -> bool> = Some(|state| state.#word >= #most);
+                }
+            })
+        };
+        let residual = watch(quote!(HAS_LOST_CURRENTS), *residual);
+        let over_speed = watch(quote!(IS_TOO_FAST), *over_speed);
         let [ampere, volt, volt_per_count, rpm] =
             [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
         let sectors = units
@@ -137,6 +142,7 @@ impl Types<'_> {
                 #speed_word
                 #told_words
                 #residual
+                #over_speed
 
                 #current
                 #torque

@@ -107,7 +107,7 @@ pub struct Front<'b> {
     pub held: Option<Held<'b>>,
     /// Word of the set-point's source, and its new value: the integral of the speed regulator, or the
     /// set-point in force with a slew rate.
-    pub of_set_point: Option<(Memory<'b>, Expr<'b>)>,
+    pub of_set_point: Remembered<'b>,
 }
 
 /// Results of the tracking, which runs in every period.
@@ -129,8 +129,8 @@ struct Demanded<'b> {
     j: Expr<'b>,
     /// The regulated speed, signed; with a speed loop only.
     speed: Option<Expr<'b>>,
-    /// The regulator's integral or the slewed set-point, and its new value.
-    word: Option<(Memory<'b>, Expr<'b>)>,
+    /// Words of the regulator, or the slewed set-point, and their new values.
+    words: Remembered<'b>,
 }
 
 /// State words and their new values.
@@ -189,9 +189,10 @@ impl<'b> CurrentLoop<'_, 'b> {
             outgoing,
         );
         let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
+        let turned = rotor.filter(|_| self.uses_angle());
         self.tell(
             [e, e_now],
-            demand.speed.or(rotor.map(|rotor| rotor.step_angle)),
+            demand.speed.or(turned.map(|rotor| rotor.step_angle)),
         );
         let off_leg = self.off_leg(bus, third);
         let commanded = words.v_cmd.map(read);
@@ -213,7 +214,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             emf_error: emf.and_then(|emf| emf.error),
             residual_count: emf.and_then(|emf| emf.residual_count),
             held,
-            of_set_point: demand.word,
+            of_set_point: demand.words,
         }
     }
 
@@ -237,7 +238,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let regulated =
             regulated.map(|(regulator, rotor)| regulator.regulate(l, &rotor, j, allowed));
         let slewed = words.slew.map(|slew| slew.follow(l, j));
-        let j = match (regulated, slewed) {
+        let j = match (&regulated, slewed) {
             (Some(regulated), _) => regulated.j,
             (None, slewed) => {
                 let j = slewed.map_or(j, |(slewed, _)| slewed);
@@ -246,10 +247,11 @@ impl<'b> CurrentLoop<'_, 'b> {
         };
         Demanded {
             j,
-            speed: regulated.map(|regulated| regulated.speed),
-            word: regulated
-                .map(|regulated| regulated.integral)
-                .or(slewed.map(|(_, word)| word)),
+            speed: regulated.as_ref().map(|regulated| regulated.speed),
+            words: match (regulated, slewed) {
+                (Some(regulated), _) => regulated.words,
+                (None, slewed) => slewed.map(|(_, word)| word).into_iter().collect(),
+            },
         }
     }
 
@@ -460,7 +462,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             let left_over = self.left_over(held, u);
             remembered.extend(self.fold(held, left_over));
         }
-        remembered.extend(front.of_set_point);
+        remembered.extend(front.of_set_point.iter().copied());
         if let Some(limit) = words.bus_current {
             remembered.extend(limit.follow(self.l, front.currents, command));
         }

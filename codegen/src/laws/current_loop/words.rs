@@ -90,12 +90,18 @@ impl<'b> CurrentLoop<'_, 'b> {
         self.needs.emf != EmfUse::None && self.options.emf == source
     }
 
-    /// Whether the law uses the rotor's angle or speed.
-    fn needs_rotor(&self) -> bool {
+    /// Whether the law uses the rotor's angle.
+    pub(super) fn uses_angle(&self) -> bool {
         self.needs.emf != EmfUse::None && self.options.emf.is_modelled()
             || self.options.advance > 0.0
             || self.options.reference == Reference::Proportional
+    }
+
+    /// Whether the drive uses the rotor's angle or speed.
+    fn needs_rotor(&self) -> bool {
+        self.uses_angle()
             || self.options.speed.is_some()
+            || self.l.spec.inverter.over_speed.is_some()
     }
 
     /// Whether the law observes the error of the modelled EMF.

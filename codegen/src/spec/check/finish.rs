@@ -55,6 +55,7 @@ pub(super) fn inverter(
             (maximum, &maximum_part),
             errors,
         );
+        relations::check_over_speed(inverter, motor, errors);
         (minimum, maximum)
     });
     let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
@@ -91,6 +92,7 @@ pub(super) fn inverter(
         hall_capture: capture?,
         minimum_speed,
         maximum_speed,
+        over_speed: inverter.over_speed.as_ref().map(|given| given.si),
         stall_periods: periods(
             stall_timeout(inverter, motor, controller, minimum_speed),
             t_s,

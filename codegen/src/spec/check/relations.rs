@@ -17,6 +17,10 @@ const GREATEST_AGE: f64 = 65_000.0;
 /// Fewest control periods per electrical turn: one per sector.
 const LEAST_PERIODS: f64 = 6.0;
 
+/// Fewest control periods per electrical turn at the over-speed. More than one per sector: a rotor that
+/// speeds up, or sensors out of place, must not skip a sector before seven edges have told the speed.
+const LEAST_WATCHED: f64 = 8.0;
+
 /// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R.
 pub(super) fn check_period(
     reader: &Reader,
@@ -146,6 +150,33 @@ pub(super) fn check_speeds(
             HallCapture::Timer { .. } => Some(per_second * GREATEST_AGE / ticks),
         };
         errors.push(catalogue::minimum_speed(minimum_part, ticks, least, clock));
+    }
+    Some(())
+}
+
+/// Accepted: an over-speed that no run at rated speed reaches, although a turn is measured to a control
+/// period, and whose sectors last long enough to be seen. Refused: any other.
+pub(super) fn check_over_speed(
+    inverter: &Inverter,
+    motor: &Motor,
+    errors: &mut Collector,
+) -> Option<()> {
+    let (given, rated) = (inverter.over_speed.as_ref()?, motor.rated_speed.as_ref()?);
+    let (t_s, period) = (inverter.t_s?, inverter.period.as_ref()?);
+    let pole_pairs = f64::from(motor.pole_pairs?);
+    // The same of speeds and of control periods: the one of the other.
+    let turn = |of: f64| TAU / (of * pole_pairs * t_s);
+    let [narrowest, _] = motor.extreme_sectors();
+    let fastest = turn(LEAST_WATCHED / narrowest);
+    let least = turn((turn(rated.si) - 1.0).max(1.0));
+    let is_within = least * (1.0 - 1e-9) <= given.si && given.si <= fastest * (1.0 + 1e-9);
+    if !is_within {
+        errors.push(catalogue::over_speed(
+            &given.part,
+            &rated.part,
+            &period.part,
+            [least, fastest],
+        ));
     }
     Some(())
 }

@@ -7,6 +7,7 @@ use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;
 use crate::spec::words::{Words as _, words};
+use std::f64::consts::PI;
 
 words! {
     /// Source of the EMF.
@@ -83,6 +84,8 @@ pub struct SpeedLoop {
     pub bandwidth: f64,
     /// Inertia of rotor and load, kg m2.
     pub inertia: f64,
+    /// Greatest rate of the speed set-point in force, mechanical rad/s2; none: it is the set-point.
+    pub acceleration_limit: Option<f64>,
 }
 
 /// Options that all controllers share.
@@ -151,6 +154,12 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .by_default("1/50 of the electrical frequency at rated speed")
             .about("Bandwidth of the speed loop, at most 1/8 of the electrical frequency at rated speed; only with `speed_loop: on`"),
         |options| Some(number(options.speed?.bandwidth)),
+    ),
+    Row::of(
+        rule::quantity("acceleration_limit", &[D::SpeedRate], SLOWEST_RATE, 1e6 * SLOWEST_RATE, "5000 rpm/s")
+            .by_default("none: a set-point takes effect at once")
+            .about("Greatest rate at which the speed loop follows `set_speed`, rpm/s, krpm/s, rad/s2; only with `speed_loop: on`"),
+        |options| Some(number(options.speed?.acceleration_limit?)),
     ),
     Row::of(
         rule::quantity("slew_rate", &[D::CurrentRate], 1e-4, 1e9, "200 A/s")
@@ -291,6 +300,9 @@ pub(crate) struct Surroundings {
     /// Electrical frequency at rated speed, hertz.
     pub rated_frequency: Option<f64>,
 }
+
+/// Least `acceleration_limit`, 10 rpm/s: the change in a period is still some words.
+const SLOWEST_RATE: f64 = PI / 3.0;
 
 /// Least and greatest number of periods of `residual_timeout`.
 const RESIDUAL_PERIODS: [u32; 2] = [50, 65_535];
@@ -559,13 +571,19 @@ fn read_speed_loop(
 ) -> Option<SpeedLoop> {
     let is_on = reader.switch(errors, "speed_loop") == Some(true);
     let bandwidth = reader.plain_quantity(errors, "speed_bandwidth");
+    let acceleration = reader.plain_quantity(errors, "acceleration_limit");
     if !is_on {
-        if let Some(bandwidth) = bandwidth {
+        let options = [
+            ("speed_bandwidth", bandwidth),
+            ("acceleration_limit", acceleration),
+        ];
+        for (option, given) in options {
+            let Some(given) = given else { continue };
             let why = "no speed controller is generated";
             errors.push(catalogue::option_without_effect(
-                &bandwidth.part.location,
-                "speed_bandwidth",
-                &bandwidth.part.given,
+                &given.part.location,
+                option,
+                &given.part.given,
                 reader
                     .field("speed_loop")
                     .map_or(reader.location(), |field| &field.location),
@@ -605,6 +623,7 @@ fn read_speed_loop(
     Some(SpeedLoop {
         bandwidth: bandwidth.map_or(frequency / 50.0, |given| given.si),
         inertia,
+        acceleration_limit: acceleration.map(|given| given.si),
     })
 }
 

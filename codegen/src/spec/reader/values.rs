@@ -419,6 +419,7 @@ pub(crate) fn quantity_text(si: f64, dimension: Dimension) -> String {
         Dimension::Ratio => percent(si),
         Dimension::CurrentPerCount => engineering(si, "A/count"),
         Dimension::CurrentRate => engineering(si, "A/s"),
+        Dimension::SpeedRate => format!("{}/s", rpm(si)),
         Dimension::Periods if si == 1.0 => "1 period".to_owned(),
         Dimension::Periods => format!("{} periods", significant(si)),
     }

@@ -194,6 +194,8 @@ fn limits_in_messages_are_accepted() {
                 "lower it to ",
                 "pdcc",
             ),
+            ("HX0323", "over_speed", "2001 rpm", "lies outside ", "pdcc"),
+            ("HX0323", "over_speed", "190000 rpm", " to ", "pdcc"),
             ("HX0312", "f_pwm", "1.7 kHz", "raise `f_pwm` to ", "pdcc"),
             ("HX0301", "f_pwm", "600 Hz", "`f_pwm` of at least ", "pdcc"),
             ("HX0406", "f_pwm", "3 kHz", "(`f_pwm`: ", "phcc"),
@@ -252,7 +254,7 @@ fn limits_in_messages_are_accepted() {
             followed += 1;
         }
     }
-    assert_eq!(followed, 27);
+    assert_eq!(followed, 33);
 }
 
 #[test]

@@ -39,6 +39,8 @@ pub enum Dimension {
     CurrentPerCount,
     /// SI: A/s.
     CurrentRate,
+    /// Speed per time.
+    SpeedRate,
     /// Control periods.
     Periods,
 }
@@ -64,6 +66,7 @@ impl Dimension {
             Self::Ratio => "a ratio",
             Self::CurrentPerCount => "a current per ADC count",
             Self::CurrentRate => "a current per time",
+            Self::SpeedRate => "a speed per time",
             Self::Periods => "a number of control periods",
         }
     }
@@ -196,6 +199,16 @@ const QUANTITIES: &[(Powers, D, [f64; 2])] = &[
         D::CurrentRate,
         [1.0, 1.0],
     ),
+    (
+        powers(&[(X::Turn, 1), (X::Minute, -1), (X::Second, -1)]),
+        D::SpeedRate,
+        [PI, 30.0],
+    ),
+    (
+        powers(&[(X::Radian, 1), (X::Second, -2)]),
+        D::SpeedRate,
+        [1.0, 1.0],
+    ),
     (powers(&[(X::Period, 1)]), D::Periods, [1.0, 1.0]),
 ];
 
@@ -282,5 +295,6 @@ pub(super) const KNOWN: &[(D, &[&str])] = &[
         &["A/count", "mA/count", "uA/count", "mA/LSB"],
     ),
     (D::CurrentRate, &["A/s", "A/ms", "mA/s", "kA/s"]),
+    (D::SpeedRate, &["rpm/s", "krpm/s", "rad/s2"]),
     (D::Periods, &["periods", "period"]),
 ];

@@ -179,6 +179,7 @@ fn cause(cause: Cause) -> &'static str {
         Cause::UnderVoltage => "under-voltage",
         Cause::Residual => "residual",
         Cause::CurrentSum => "current sum",
+        Cause::OverSpeed => "over-speed",
     }
 }
 
@@ -199,7 +200,7 @@ fn tone(row: &FaultRow, trip_current: f64) -> Tone {
 }
 
 /// What the counts mean for the board.
-const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, whether the rotor stands and whether the currents follow the voltages. Against what shows in none of them the \
+const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a measured bus and, where told to, whether the rotor stands or turns too fast and whether the currents follow the voltages. Against what shows in none of them the \
     board needs hardware: a comparator of the current on the timer's break input, a watchdog on the control interrupt and a \
     thermal limit.";
 
@@ -246,6 +247,10 @@ fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
             "Currents that do not follow the voltages trip nothing: the option `residual_timeout` turns that on where the controller has `emf: observer`."
                 .to_owned(),
         );
+    }
+    if study.over_speed_rpm.is_none() {
+        lines
+            .push("The speed is not watched: `over_speed` in [inverter] turns that on.".to_owned());
     }
     lines.push(HARDWARE.to_owned());
     lines.join("\n")

@@ -18,6 +18,7 @@ fn the_study_is_one_json_object_whose_totals_are_those_of_its_rows() {
             "max_current_a",
             "model",
             "motor",
+            "over_speed_rpm",
             "points",
             "residual_timeout_s",
             "rows",
@@ -28,6 +29,7 @@ fn the_study_is_one_json_object_whose_totals_are_those_of_its_rows() {
     );
     assert_eq!(study["engine"], "compiled");
     assert_eq!(study["stall_timeout_s"], Value::Null);
+    assert_eq!(study["over_speed_rpm"], Value::Null);
     let is_sound = |row: &&Value| row["part"] == "sound";
     let (sound, broken): (Vec<&Value>, Vec<&Value>) = rows(&study).iter().partition(is_sound);
     let totals = &study["totals"];

@@ -37,6 +37,8 @@ pub enum Cause {
     Residual,
     /// [`Fault::CurrentSum`]
     CurrentSum,
+    /// [`Fault::OverSpeed`]
+    OverSpeed,
 }
 
 impl Cause {
@@ -55,6 +57,7 @@ impl Cause {
             Fault::UnderVoltage => Self::UnderVoltage,
             Fault::Residual => Self::Residual,
             Fault::CurrentSum => Self::CurrentSum,
+            Fault::OverSpeed => Self::OverSpeed,
             other => unreachable!("unknown fault: {other:?}"),
         }
     }
@@ -72,6 +75,7 @@ impl fmt::Display for Cause {
             Self::UnderVoltage => "the bus voltage was below `under_voltage`",
             Self::Residual => "the currents did not follow the voltages for the `residual_timeout`",
             Self::CurrentSum => "three measured currents did not add up to zero",
+            Self::OverSpeed => "the rotor turned faster than `over_speed`",
         })
     }
 }
@@ -95,7 +99,7 @@ mod tests {
     fn every_fault_has_a_cause_of_its_own() {
         let faults = (0..256).filter_map(Fault::from_number);
         let causes: Vec<String> = faults.map(|fault| Cause::of(fault).to_string()).collect();
-        assert!(causes.len() >= 9, "{causes:?}");
+        assert!(causes.len() >= 10, "{causes:?}");
         for (index, cause) in causes.iter().enumerate() {
             assert!(!causes[..index].contains(cause), "{cause}");
         }

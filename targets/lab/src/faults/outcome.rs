@@ -5,6 +5,7 @@ use super::run::{OperatingPoint, Run};
 use crate::closed_loop::{Cause, percent};
 use hexagen_codegen::spec::Spec;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// A study of all classes of faults of a drive.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -18,6 +19,8 @@ pub struct FaultStudy {
     /// Time after which currents that do not follow the voltages trip, second; `None` where they are
     /// not watched.
     pub residual_timeout_s: Option<f64>,
+    /// Speed above which the drive trips, rpm; `None` where it is not watched.
+    pub over_speed_rpm: Option<f64>,
     /// The operating points, each a run of every class.
     pub points: Vec<OperatingPoint>,
     /// One row per class.
@@ -124,6 +127,7 @@ impl FaultStudy {
                 .then(|| f64::from(inverter.stall_periods) * inverter.t_s),
             residual_timeout_s: (spec.controller.common().residual_periods)
                 .map(|periods| f64::from(periods) * inverter.t_s),
+            over_speed_rpm: inverter.over_speed.map(|speed| speed * 60.0 / TAU),
             totals: Totals::of(&rows, inverter.trip_current),
             points,
             rows,

@@ -15,6 +15,7 @@ mod limit;
 mod motion;
 mod parts;
 mod physical;
+mod ramp;
 mod residual;
 mod rotor;
 mod sectors;
@@ -29,8 +30,8 @@ use super::supervision::{BusWatch, Limits, Mode, Observation, Period, Stop, Unit
 use super::trace::Reach;
 use super::variant::{Variant, reference_gain};
 use crate::exact::{
-    Coefficient, Shift, Word, all_three, both, floor, floor_weighted, input, lesser, pow2, within,
-    word,
+    Coefficient, Shift, Word, all_three, both, floor, floor_weighted, greater, input, lesser, pow2,
+    within, word,
 };
 use crate::{EmfSource, Error, FormatTable, Reference, Spec};
 use bus_current::BusCurrent;
@@ -39,6 +40,7 @@ use fade::Fade;
 use hexagen::{Fault, Legs, Sample};
 use law::{Command, Inputs, Law};
 use parts::Part;
+use ramp::Ramp;
 use residual::ResidualWatch;
 use slew::Slew;
 use speed::Regulator;
@@ -57,6 +59,7 @@ pub struct BitTrue<W: Word = f64> {
     k: Constants<W>,
     law: Law<W>,
     speed: Option<Regulator<W>>,
+    ramp: Option<Ramp>,
     slew: Option<Slew>,
     fade: Option<Fade<W>>,
     bus_current: Option<BusCurrent<W>>,
@@ -139,6 +142,7 @@ impl<W: Word> BitTrue<W> {
             j: speed.as_ref().map_or(word(0.0), |speed| speed.top),
             speed_ref: word(0.0),
             speed,
+            ramp: Ramp::new(spec, &scale)?,
             slew: Slew::new(spec, &scale, &k)?,
             fade: Fade::new(spec, &scale)?,
             bus_current: BusCurrent::new(spec, &scale, &k)?,
@@ -323,6 +327,9 @@ impl<W: Word> BitTrue<W> {
         {
             self.state.supervisor.trip(Fault::Residual);
         }
+        if self.state.timing.is_too_fast() {
+            self.state.supervisor.trip(Fault::OverSpeed);
+        }
         let k = &self.k;
         // 1 measure
         let limits = &self.limits;
@@ -400,10 +407,14 @@ impl<W: Word> BitTrue<W> {
             None => allowed,
         };
         let mut speed_integral = self.state.speed_integral;
+        let mut speed_in_force = self.state.speed_in_force;
         if let Some(speed) = &self.speed {
             let turning = direction * self.state.omega;
-            let wanted = (self.speed_ref, turning);
-            (j, speed_integral) = speed.regulate(wanted, j, allowed, speed_integral);
+            let mut wanted = self.speed_ref;
+            if let Some(ramp) = &self.ramp {
+                (wanted, speed_in_force) = ramp.follow(wanted, turning, &self.state);
+            }
+            (j, speed_integral) = speed.regulate((wanted, turning), j, allowed, speed_integral);
         } else {
             j = fade::limited(allowed, j);
         }
@@ -545,6 +556,8 @@ impl<W: Word> BitTrue<W> {
             self.state.emf_error = emf_error;
             self.state.residual_count = residual_count;
             self.state.speed_integral = speed_integral;
+            self.state.speed_in_force = speed_in_force;
+            self.state.ramp_begun = greater(self.state.ramp_begun, self.state.timing.ramp_known());
             self.state.j_in_force = j_in_force;
             self.state.integral = decision.integral;
             self.state.hysteresis = decision.hysteresis;

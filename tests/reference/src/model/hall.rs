@@ -18,6 +18,8 @@ pub struct HallClock {
     pub turn_rest: f64,
     pub age_max: f64,
     pub rev_min: f64,
+    /// Of a turn at the over-speed; 0 where the speed is not watched.
+    pub over_speed_turn: f64,
 }
 
 impl HallClock {
@@ -27,6 +29,7 @@ impl HallClock {
             ticks,
             age_max,
             rev_min,
+            over_speed_turn,
             ..
         } = spec.inverter;
         Self {
@@ -36,6 +39,7 @@ impl HallClock {
             turn_rest: (6.0 * ticks.fract() + 0.5).floor(),
             age_max: f64::from(age_max),
             rev_min: f64::from(rev_min),
+            over_speed_turn: f64::from(over_speed_turn.unwrap_or(0)),
         }
     }
 }
@@ -53,7 +57,12 @@ pub struct HallTiming<W = f64> {
     pub intervals: [W; 6],
     /// Their sum: ticks of one electrical turn.
     pub rev: W,
+    /// Edges in a row at which the turn was too short.
+    pub too_fast: W,
 }
+
+/// Edges in a row with too short a turn that are an over-speed.
+const TOO_FAST: f64 = 7.0;
 
 impl<W: Word> Default for HallTiming<W> {
     fn default() -> Self {
@@ -63,6 +72,7 @@ impl<W: Word> Default for HallTiming<W> {
             edges: 0,
             intervals: [word(1.0); 6],
             rev: word(6.0),
+            too_fast: word(0.0),
         }
     }
 }
@@ -78,6 +88,18 @@ impl<W: Word> HallTiming<W> {
                 self.direction = word(-1.0);
             }
         }
+    }
+
+    /// What a ramp of the speed has begun at: 1, or 2 once the speed is known.
+    #[inline]
+    pub fn ramp_known(&self) -> f64 {
+        if self.edges == 2 { 2.0 } else { 1.0 }
+    }
+
+    /// Whether the rotor turns too fast.
+    #[inline]
+    pub fn is_too_fast(&self) -> bool {
+        self.too_fast >= TOO_FAST
     }
 
     /// One sample; `direction_before` is the direction before this sample's edge was evaluated.
@@ -118,6 +140,11 @@ impl<W: Word> HallTiming<W> {
             };
             let intervals = self.intervals.into_iter();
             self.rev = intervals.fold(word(clock.turn_rest), |turn, interval| turn + interval);
+            self.too_fast = if self.edges == 2 && self.rev < clock.over_speed_turn {
+                lesser(self.too_fast + 1.0, TOO_FAST)
+            } else {
+                word(0.0)
+            };
         }
         if age > clock.age_max || (self.edges == 2 && age * 3.0 > self.rev) {
             self.edges = 0;

@@ -89,6 +89,8 @@ pub struct Ideal {
     /// Residual allowed always, per ampere, per electrical radian per second, and without an angle, volt.
     allowed_residual: [f64; 4],
     t_s: f64,
+    /// Greatest change of the speed set-point in a period, rad/s; 0 for any.
+    speed_step: f64,
     /// Greatest change of the set-point in a period, ampere; 0 for any.
     slew_step: f64,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
@@ -157,6 +159,7 @@ impl Ideal {
             speed_loop: SpeedLoop::new(spec),
             allowed_residual: allowed_residual(spec),
             t_s: inverter.t_s,
+            speed_step: spec.loop_options().acceleration_limit * inverter.t_s,
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
             fades: [inverter.braking_fade, inverter.motoring_fade],
             bus_currents: [inverter.bus_current_limit, inverter.return_current_limit],
@@ -279,6 +282,9 @@ impl Ideal {
         if most > 0.0 && self.state.residual_count >= most {
             self.state.supervisor.trip(Fault::Residual);
         }
+        if self.state.timing.is_too_fast() {
+            self.state.supervisor.trip(Fault::OverSpeed);
+        }
         // 1 measure
         let limits = &self.limits;
         let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);
@@ -345,8 +351,19 @@ impl Ideal {
         let current_in_force = current;
         let direction = self.state.timing.direction;
         let allowed = self.allowed(direction);
+        let mut speed_in_force = self.speed;
         if let Some(speed_loop) = &self.speed_loop {
-            let wanted = (self.speed, self.electrical_speed() * direction);
+            let angle = self.electrical_speed() * direction;
+            if self.speed_step > 0.0 {
+                let before = if self.state.ramp_begun < self.state.timing.ramp_known() {
+                    speed_loop.speed(angle)
+                } else {
+                    self.state.speed_in_force
+                };
+                let step = self.speed_step;
+                speed_in_force = speed_in_force.clamp(before - step, before + step);
+            }
+            let wanted = (speed_in_force, angle);
             (current, speed_integral) =
                 speed_loop.regulate(wanted, current, allowed, speed_integral);
         } else {
@@ -482,6 +499,9 @@ impl Ideal {
             self.state.emf_error = emf_error;
             self.state.residual_count = residual_count;
             self.state.speed_integral = speed_integral;
+            self.state.speed_in_force = speed_in_force;
+            let known = self.state.timing.ramp_known();
+            self.state.ramp_begun = self.state.ramp_begun.max(known);
             self.state.current_in_force = current_in_force;
             self.state.integral = decision.integral;
             self.state.rises = decision.rises;
@@ -499,6 +519,8 @@ impl Ideal {
             self.state.residual_count = 0.0;
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
+            self.state.speed_in_force = 0.0;
+            self.state.ramp_begun = 0.0;
             self.state.current_in_force = 0.0;
             self.state.current_withheld = 0.0;
             self.state.line_cmd = [0.0; 2];

@@ -66,6 +66,7 @@ pub fn fault_from_word(word: i32) -> Option<Fault> {
         7 => Fault::UnderVoltage,
         8 => Fault::Residual,
         9 => Fault::CurrentSum,
+        10 => Fault::OverSpeed,
         _ => return None,
     })
 }
@@ -84,6 +85,7 @@ pub fn fault_to_word(fault: Option<Fault>) -> i32 {
         Some(Fault::UnderVoltage) => 7,
         Some(Fault::Residual) => 8,
         Some(Fault::CurrentSum) => 9,
+        Some(Fault::OverSpeed) => 10,
         Some(other) => unreachable!("unknown fault: {other:?}"),
     }
 }

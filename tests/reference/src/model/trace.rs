@@ -99,6 +99,10 @@ pub struct PhysicalState {
     pub past: Past,
     /// Integral of the speed controller, ampere.
     pub speed_integral: f64,
+    /// Speed set-point in force with an acceleration limit, mechanical rad/s.
+    pub speed_in_force: f64,
+    /// 1 once controlled, 2 once the speed is known.
+    pub ramp_begun: f64,
     /// Set-point in force with a slew rate, ampere.
     pub current_in_force: f64,
     /// By how much the bus current limits the set-point below the largest, ampere.

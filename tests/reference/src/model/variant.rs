@@ -93,7 +93,8 @@ impl Variant {
             rotor: matches!(emf, Some(EmfSource::Model | EmfSource::Observer))
                 || options.advance > 0.0
                 || options.reference == Reference::Proportional
-                || options.has_speed_loop(),
+                || options.has_speed_loop()
+                || spec.inverter.over_speed_turn.is_some(),
             commutation: spec.commutation_end().filter(|_| commutates),
             emf,
             held: if held { Switch::On } else { Switch::Off },

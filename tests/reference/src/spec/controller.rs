@@ -39,6 +39,8 @@ pub struct LoopOptions {
     pub speed_bandwidth: f64,
     /// Inertia of rotor and load, kg m2; with a speed loop.
     pub inertia: f64,
+    /// Greatest rate of the speed set-point in force, rad/s2; 0 without one.
+    pub acceleration_limit: f64,
     /// Greatest rate of the current set-point in force, A/s; 0 without one.
     pub slew_rate: f64,
     /// Time-out of the residual watch, control periods; 0 where the currents are not watched.
@@ -88,6 +90,9 @@ macro_rules! options {
             /// Inertia of rotor and load, kg m2; with a speed loop.
             #[serde(default)]
             pub inertia: f64,
+            /// Greatest rate of the speed set-point in force, rad/s2; 0 without one.
+            #[serde(default)]
+            pub acceleration_limit: f64,
             /// Greatest rate of the current set-point in force, A/s; 0 without one.
             #[serde(default)]
             pub slew_rate: f64,
@@ -109,6 +114,7 @@ macro_rules! options {
                     word: self.word,
                     speed_bandwidth: self.speed_bandwidth,
                     inertia: self.inertia,
+                    acceleration_limit: self.acceleration_limit,
                     slew_rate: self.slew_rate,
                     residual_periods: self.residual_periods,
                 }

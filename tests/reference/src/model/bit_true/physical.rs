@@ -58,12 +58,13 @@ impl BitTrue {
     pub fn physical_state(&self) -> PhysicalState {
         let integral_ampere = self.speed.as_ref().map_or(0.0, |speed| speed.ampere);
         let slew_ampere = self.slew.map_or(0.0, |slew| slew.ampere);
+        let ramp_unit = self.ramp.map_or(0.0, |ramp| ramp.unit);
         let of_bus = self
             .bus_current
             .as_ref()
             .map_or([0.0; 2], BusCurrent::amperes);
         self.state
-            .to_physical(&self.k, [integral_ampere, slew_ampere], of_bus)
+            .to_physical(&self.k, [integral_ampere, slew_ampere, ramp_unit], of_bus)
     }
 }
 
@@ -72,7 +73,7 @@ impl State<f64> {
     pub fn to_physical(
         self,
         k: &Constants<f64>,
-        [integral_ampere, slew_ampere]: [f64; 2],
+        [integral_ampere, slew_ampere, ramp_unit]: [f64; 3],
         [withheld_ampere, bus_ampere]: [f64; 2],
     ) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
@@ -108,6 +109,8 @@ impl State<f64> {
                 later: volts(self.past.later),
             },
             speed_integral: self.speed_integral * integral_ampere,
+            speed_in_force: self.speed_in_force * ramp_unit,
+            ramp_begun: self.ramp_begun,
             current_in_force: self.j_in_force * slew_ampere,
             current_withheld: self.j_withheld * withheld_ampere,
             line_cmd: self.line_cmd.map(|counts| counts / k.timer_period),

@@ -43,7 +43,13 @@ impl Slew {
     #[inline]
     pub fn follow<W: Word>(&self, j: W, in_force: W) -> (W, W) {
         let goal = j * self.from_voltage;
-        let followed = lesser(greater(goal, in_force - self.step), in_force + self.step);
+        let followed = approached(goal, in_force, self.step);
         (floor_weighted(followed, 1.0 / self.from_voltage), followed)
     }
+}
+
+/// A word that approaches a goal by at most a step.
+#[inline]
+pub fn approached<W: Word>(goal: W, before: W, step: f64) -> W {
+    lesser(greater(goal, before - step), before + step)
 }

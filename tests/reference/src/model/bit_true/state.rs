@@ -20,6 +20,9 @@ pub struct State<W: Word> {
     pub timing: HallTiming<W>,
     pub omega: W,
     pub speed_integral: W,
+    pub speed_in_force: W,
+    /// 1 once controlled, 2 once the speed is known.
+    pub ramp_begun: W,
     pub j_in_force: W,
     pub j_withheld: W,
     /// `line_a_cmd`, `line_b_cmd`.
@@ -202,8 +205,15 @@ macro_rules! for_each_word {
             $show!("rev", $state.timing.rev);
             $show!("omega", $state.omega);
         }
+        if $parts.has(Part::OverSpeed) {
+            $show!("over_speed_count", $state.timing.too_fast);
+        }
         if $parts.has(Part::Speed) {
             $show!("speed_integral", $state.speed_integral);
+        }
+        if $parts.has(Part::Ramp) {
+            $show!("speed_in_force", $state.speed_in_force);
+            $show!("ramp_begun", $state.ramp_begun);
         }
         if $parts.has(Part::Slew) {
             $show!("j_in_force", $state.j_in_force);
@@ -318,6 +328,8 @@ impl<W: Word> State<W> {
     /// State after a period without control (section 12).
     pub fn stop(&mut self) {
         self.speed_integral = word(0.0);
+        self.speed_in_force = word(0.0);
+        self.ramp_begun = word(0.0);
         self.j_in_force = word(0.0);
         self.j_withheld = word(0.0);
         self.line_cmd = [word(0.0); 2];

@@ -35,6 +35,11 @@ impl SpeedLoop {
         speed.clamp(-self.greatest, self.greatest)
     }
 
+    /// The mechanical speed of an electrical angle per tick, rad/s.
+    pub fn speed(&self, angle: f64) -> f64 {
+        angle * self.per_tick
+    }
+
     /// The current, within +-`most` and the limits of the bus, and the integral after the step, ampere;
     /// `angle` is the electrical angle per tick.
     pub fn regulate(
@@ -45,7 +50,7 @@ impl SpeedLoop {
         integral: f64,
     ) -> (f64, f64) {
         let limit = 2.0 * self.max_current;
-        let part = (self.gain * (wanted - angle * self.per_tick)).clamp(-limit, limit);
+        let part = (self.gain * (wanted - self.speed(angle))).clamp(-limit, limit);
         let open = part + integral;
         let current = open.clamp(-most.abs(), most.abs());
         let current = current.max(least).min(greatest);
