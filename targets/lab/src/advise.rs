@@ -56,8 +56,11 @@ pub const RIPPLE_ALIKE: f64 = 2.0;
 /// the rated one.
 pub const LIMIT_ALIKE: f64 = 2.0;
 
+/// A change of the plant, of which the nominal bus voltage is known.
+type Deviate = fn(&mut PlantOptions, f64);
+
 /// Deviations of motor and bus, each alone.
-const DEVIATIONS: [(&str, fn(&mut PlantOptions, f64)); 5] = [
+const DEVIATIONS: [(&str, Deviate); 5] = [
     ("R x 1.4", |plant, _| plant.scale_r = Some(1.4)),
     ("L x 0.75", |plant, _| plant.scale_l = Some(0.75)),
     ("L x 1.3", |plant, _| plant.scale_l = Some(1.3)),
@@ -301,11 +304,12 @@ impl Advice {
     /// The variants that are alike in torque and ripple, with and without deviations, as good as any. Each
     /// rule leaves some of the others over, and says what it has against the rest.
     fn alike(&mut self) -> Vec<usize> {
+        type Runs = fn(&Tried) -> &[Point];
         let many = self.tried.len();
         let mut left: Vec<usize> = (0..many).collect();
         self.keep(&mut left, &works);
         self.reason = format!("{} of {many} variants never trip", left.len());
-        let rules: [(&str, fn(&Tried) -> &[Point]); 2] = [
+        let rules: [(&str, Runs); 2] = [
             ("on the stated motor", |tried| &tried.nominal),
             ("with deviations", |tried| &tried.deviating),
         ];
