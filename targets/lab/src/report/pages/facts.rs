@@ -88,10 +88,7 @@ fn motor(data: &Results) -> Vec<(&'static str, String)> {
             format!("trapezoidal, {}\u{b0} flat top", number(flat_top_deg, 0))
         }
         EmfShape::Sinusoidal => "sinusoidal".to_owned(),
-        EmfShape::Harmonics(series) => format!(
-            "of harmonics, fundamental {}\u{a0}% of the peak",
-            number(100.0 * series.fundamental(), 1)
-        ),
+        EmfShape::Harmonics(_) => "of harmonics".to_owned(),
     };
     let mut rows = vec![
         ("Pole pairs", motor.pole_pairs.to_string()),
