@@ -279,8 +279,8 @@ impl<C: Control> ControlLoop<'_, C> {
     /// Slows the rotor down until [`resume`](Self::resume) or a reset: all lower switches on where
     /// the motor takes no more than the specification's `max_current` that way; above that speed this
     /// current against the rotation, with a speed loop speed 0 within the current that is set, into
-    /// the bus, once two Hall edges in one direction tell it. In a start, once that is over. Ignored
-    /// when tripped, calibrating and pre-charging.
+    /// the bus, once two Hall edges in one direction tell it. An `acceleration_limit` holds for this
+    /// speed, too. In a start, once that is over. Ignored when tripped, calibrating and pre-charging.
     pub fn brake(&mut self) {
         self.core.supervisor.brake();
         self.publish();
