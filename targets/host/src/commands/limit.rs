@@ -45,6 +45,8 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit, Option<SpeedL
     let motor = SelectedMotor::find(&arguments.motor, &arguments.plant.options())?;
     let drive = motor.prepare_for_torque(arguments.controller.as_deref())?;
     tell_warnings(&drive);
+    // Warns of a torque beyond the drive, once for both scans.
+    arguments.plant.set_point(&drive, arguments.torque(&drive));
     let limit = scan(arguments, &drive)?;
     let inverter = &drive.spec.inverter;
     let has_window = inverter.window().is_some() || inverter.minimum_low_time > 0.0;
@@ -73,7 +75,7 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failur
     }
     let plant = arguments.plant.plant(drive)?;
     let run = arguments.plant.options().run(drive, 1.0, torque);
-    let set_point = arguments.plant.set_point(drive, torque);
+    let set_point = arguments.plant.options().set_point(drive, torque);
     let scan = LimitOptions::new(drive.rated_rpm(), torque);
     let progress = spinner("scanning speeds");
     let limit = speed_limit(
@@ -120,10 +122,14 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
             )
         });
     let bounds = outcome.bounds.map_or_else(String::new, |bounds| {
-        format!(
-            "\nThe bus drives the whole current up to {:.0} rpm; no profile within its peak gives the torque beyond {:.0} rpm.",
-            bounds.envelope_rpm, bounds.any_profile_rpm
-        )
+        if bounds.envelope_rpm > 0.0 {
+            format!(
+                "\nThe bus drives the whole current up to {:.0} rpm; no profile within its peak gives the torque beyond {:.0} rpm.",
+                bounds.envelope_rpm, bounds.any_profile_rpm
+            )
+        } else {
+            "\nThe torque is beyond the drive at every speed.".to_owned()
+        }
     });
     print_text(&format!(
         "{}: {} Nm {}{free}{bounds}",

@@ -17,6 +17,7 @@ const MERITS: [&str; 14] = [
     "i11_pct",
     "i13_pct",
     "thd_pct",
+    "current_rms_a",
     "tracking_rms_a",
     "commutation_us",
     "switching_hz",

@@ -265,7 +265,7 @@ fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
         assert!(number(one_step, "compares_apart_counts") <= 1.0, "{row}");
         for at in row["closed_loop"].as_array().expect("a list") {
             let figures = at["figures"].as_array().expect("a list");
-            assert_eq!(figures.len(), 14);
+            assert_eq!(figures.len(), 15);
             for figure in figures {
                 assert_eq!(figure["close"], true, "{figure}");
                 assert!(number(figure, "of_allowance") <= 1.0, "{figure}");
