@@ -6,7 +6,7 @@ use hexagen_lab::engine::{MotorSource, plant_of, prepare};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
-const MERITS: [&str; 14] = [
+const MERITS: [&str; 15] = [
     "mean_torque_nm",
     "ripple_pp_pct",
     "ripple_rms_pct",
