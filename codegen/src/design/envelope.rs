@@ -145,7 +145,7 @@ impl Envelope {
     /// What a set-point of one ampere and the EMF take between two legs over a sector.
     fn lines(&self, omega_m: f64) -> Vec<Line> {
         match self.reference {
-            // Two phases carry one current; their EMF is greatest in the middle of the sector.
+            // Two phases carry one current, at worst where their EMF is greatest.
             Reference::QuasiSquare => vec![Line {
                 drop: 2.0 * self.resistance,
                 emf: self.emf_constant * omega_m * self.emf_shape.line_to_line_peak(),
@@ -158,15 +158,24 @@ impl Envelope {
         let turn = omega_m * self.pole_pairs * self.t_s;
         let decay = (-self.resistance * self.t_s / self.inductance).exp();
         let gain = self.resistance / (1.0 - decay);
-        let angles = sector().flat_map(|theta| {
-            let (from, to) = (self.unit_currents(theta), self.unit_currents(theta + turn));
-            let emf = self.mean_emf(theta, turn);
+        let lines = |from: [f64; 3], to: [f64; 3], emf: [f64; 3]| {
             [(0, 1), (1, 2), (2, 0)].map(|(p, q)| Line {
                 drop: gain * ((to[p] - to[q]) - decay * (from[p] - from[q])),
                 emf: omega_m * (emf[p] - emf[q]),
             })
-        });
-        angles.collect()
+        };
+        let mut all = Vec::new();
+        // Backward, currents and EMF change their signs both.
+        let is_skewed = self.emf_shape != self.emf_shape.reversed();
+        for theta in sector() {
+            let (from, to) = (self.unit_currents(theta), self.unit_currents(theta + turn));
+            let emf = self.mean_emf(theta, turn);
+            all.extend(lines(from, to, emf));
+            if is_skewed {
+                all.extend(lines(to, from, emf));
+            }
+        }
+        all
     }
 
     /// By the power that a bus current brings: torque times speed and copper losses.

@@ -132,7 +132,7 @@ fn peak(shape: EmfShape) -> f64 {
                 .fold(0.0, f64::max)
         }
         EmfShape::Harmonics(_) => {
-            let angles = (0..360).map(|degree| f64::from(degree).to_radians());
+            let angles = (0..3600).map(|step| f64::from(step).to_radians() / 10.0);
             angles
                 .map(|angle| shape.zero_sum(angle)[0].abs())
                 .fold(0.0, f64::max)

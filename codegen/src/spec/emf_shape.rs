@@ -71,10 +71,19 @@ impl EmfShape {
         squares.iter().sum::<f64>() * 2.0 / 3.0
     }
 
+    /// The shape that a rotor shows which turns backward, phases b and c exchanged.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Sinusoidal | Self::Trapezoidal { .. } => self,
+            Self::Harmonics(series) => Self::Harmonics(series.reversed()),
+        }
+    }
+
     /// Least length of the unit EMF in the plane.
     pub fn least_length(self) -> f64 {
         // The shapes repeat with each sixth of a turn.
-        let angles = (0..60).map(|degree| f64::from(degree).to_radians());
+        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
         let squares = angles.map(|theta_e| self.squared_length(theta_e));
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }

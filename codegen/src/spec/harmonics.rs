@@ -101,6 +101,35 @@ impl Harmonics {
         squares.sum::<f64>() / 2.0
     }
 
+    /// Least part of the three phases' EMF in the plane along their fundamental, over that.
+    pub fn least_along(&self) -> f64 {
+        let along = |theta: f64| {
+            let [a, b, c] = [0.0, 1.0, 2.0].map(|lag| self.at(theta - lag * THIRD));
+            // The fundamental lies along (sin theta, -cos theta).
+            let (alpha, beta) = ((2.0 * a - b - c) / 3.0, (b - c) / 3_f64.sqrt());
+            alpha * theta.sin() - beta * theta.cos()
+        };
+        let angles = (0..STEPS).map(|step| PI * f64::from(step) / f64::from(STEPS));
+        let least = angles.map(along).fold(f64::INFINITY, f64::min);
+        least / self.fundamental()
+    }
+
+    /// Sum of the harmonics' amplitudes times their orders, over the fundamental's.
+    pub fn steepness(&self) -> f64 {
+        let amplitude = |place: usize| self.sines[place].hypot(self.cosines[place]);
+        let steep = (1..ORDERS).map(|place| order(place) * amplitude(place));
+        steep.sum::<f64>() / self.fundamental()
+    }
+
+    /// The shape that a rotor shows which turns backward, phases b and c exchanged: -f(-theta).
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self {
+            cosines: self.cosines.map(|value| -value),
+            ..self
+        }
+    }
+
     /// Root mean square of a phase.
     pub fn rms(&self) -> f64 {
         self.power(|_| true).sqrt()

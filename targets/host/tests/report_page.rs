@@ -40,9 +40,9 @@ fn every_section_is_there_and_linked() {
         assert!(PAGE.contains(&format!("href=\"#{id}\"")), "link to {id}");
     }
     assert!(!PAGE.contains("This report has no"), "nothing is missing");
-    // Two of a commutation. Two speeds: six currents, trajectories and torques each, four spectra, one torque-speed
+    // The EMF. Two of a commutation. Two speeds: six currents, trajectories and torques each, four spectra, one torque-speed
     // curve, two stable ranges; and two histograms of errors.
-    assert_eq!(PAGE.matches("<div class=\"plot\"").count(), 29);
+    assert_eq!(PAGE.matches("<div class=\"plot\"").count(), 30);
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn the_page_as_json_has_its_sections_tables_and_plots() {
     let sections = page["sections"].as_array().expect("a list");
     assert_eq!(sections.len(), PAGE.matches("<section ").count());
     let text = page.to_string();
-    assert_eq!(text.matches("\"elements\":").count(), 29, "plots");
+    assert_eq!(text.matches("\"elements\":").count(), 30, "plots");
     let rows = &page["sections"][1]["blocks"][2]["table"]["groups"][0]["rows"];
     assert_eq!(rows[0][2]["text"], "3.30", "the first mean: {rows}");
 }
@@ -152,7 +152,7 @@ fn a_drive_that_tripped_has_no_figures_and_no_plots() {
     assert_eq!(page.matches(cell).count(), 2, "fixed and ideal");
     assert!(page.contains("rpm: the drive trips at 400 rpm)"));
     // Currents, trajectory and torque of the record that is gone.
-    assert_eq!(page.matches("<div class=\"plot\"").count(), 29 - 3);
+    assert_eq!(page.matches("<div class=\"plot\"").count(), 30 - 3);
 }
 
 #[test]

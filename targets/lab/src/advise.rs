@@ -1,6 +1,9 @@
 //! Which controller suits a motor on its board: variants are tried on the simulated motor, and one is
 //! recommended, with the reason.
 //!
+//! A variant is the kind of controller with its defaults but for the options that it names: those of the
+//! motor file do not count. The motor file's own controller is tried beside them, where it has options.
+//!
 //! The rule takes what must not fail first, then what costs: no trip, torque, ripple, both again with
 //! deviations of motor and bus, the speed up to which the torque is held, and of those that are alike the
 //! one with the fewest operations in a step.
@@ -42,6 +45,9 @@ const START: f64 = 0.1;
 
 /// Speeds of the runs, percent of the rated one.
 pub const SPEEDS: [u32; 3] = [25, 60, 100];
+
+/// The motor file's own controller in the list of variants.
+pub const OWN: &str = "(the motor file's)";
 
 /// Speed of the runs with a deviation, percent of the rated one.
 pub const DEVIATING_AT: u32 = 60;
@@ -134,7 +140,7 @@ pub struct Advice {
 /// Torque and ripple of the worst run of several.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Worst {
-    /// Least torque, percent, at most 100: more than the demand is no gain.
+    /// Least torque, percent, less what a run makes too much: more than the demand is as wrong as less.
     pub torque_pct: f64,
     /// Greatest ripple, percent.
     pub ripple_pct: f64,
@@ -149,7 +155,9 @@ impl Worst {
         };
         let worse = |worst: Self, point: &Point| {
             Some(Self {
-                torque_pct: worst.torque_pct.min(point.torque_pct?),
+                torque_pct: worst
+                    .torque_pct
+                    .min(100.0 - (point.torque_pct? - 100.0).abs()),
                 ripple_pct: worst.ripple_pct.max(point.ripple_pct?),
             })
         };
@@ -208,8 +216,14 @@ type Drive = (&'static str, Result<Prepared, LabError>);
 /// # Errors
 /// If none is generated: the reason of the default.
 fn prepare(motor: &SelectedMotor) -> Result<Vec<Drive>, LabError> {
-    let drives = VARIANTS.map(|variant| (variant, motor.prepare_for_torque(Some(variant))));
+    let mut plain = motor.clone();
+    plain.ast.controller.fields.clear();
+    let drives = VARIANTS.map(|variant| (variant, plain.prepare_for_torque(Some(variant))));
     let mut drives = Vec::from(drives);
+    let controller = &motor.ast.controller;
+    if controller.fields.iter().any(|field| field.name != "kind") {
+        drives.push((OWN, motor.prepare_for_torque(None)));
+    }
     if drives.iter().all(|(_, drive)| drive.is_err()) {
         drives.swap_remove(0).1?;
     }
@@ -342,6 +356,8 @@ impl Advice {
     fn recommend(&mut self, left: &mut Vec<usize>) {
         let limit = |tried: &Tried| tried.limit_pct.unwrap_or(0.0);
         let farthest = self.most(left, &limit);
+        // A torque that is not held at the first speed of the scan has no limit.
+        let has_limit = farthest > 0.0;
         self.keep(left, &|tried| {
             let ends = limit(tried) < farthest - LIMIT_ALIKE;
             ends.then(|| {
@@ -359,10 +375,16 @@ impl Advice {
             return;
         };
         let count = operations(&self.tried[recommended]);
+        if has_limit {
+            let _ = write!(
+                self.reason,
+                "; {} of them hold it up to {farthest:.0} % of rated speed, within {LIMIT_ALIKE} points",
+                left.len(),
+            );
+        }
         let _ = write!(
             self.reason,
-            "; {} of them hold it up to {farthest:.0} % of rated speed, within {LIMIT_ALIKE} points; of these it takes the fewest operations, {count}",
-            left.len(),
+            "; of these it takes the fewest operations, {count}"
         );
         left.retain(|&k| k != recommended);
         self.keep(left, &|_| {
@@ -412,10 +434,14 @@ fn works(tried: &Tried) -> Option<String> {
         return Some(format!("refused: {}", &line[start..]));
     }
     let mut points = tried.nominal.iter().chain(&tried.deviating);
-    let trips = points.find(|point| point.torque_pct.is_none() || point.ripple_pct.is_none())?;
-    Some(match trips.deviation {
-        Some(name) => format!("trips with {name}"),
-        None => format!("trips at {} % of rated speed", trips.speed_pct),
+    let fails = points.find(|point| point.torque_pct.is_none() || point.ripple_pct.is_none())?;
+    let what = match fails.torque_pct {
+        None => "trips",
+        Some(_) => "makes next to no torque",
+    };
+    Some(match fails.deviation {
+        Some(name) => format!("{what} with {name}"),
+        None => format!("{what} at {} % of rated speed", fails.speed_pct),
     })
 }
 

@@ -21,8 +21,11 @@ const DRAWN: [usize; 2] = [6, 200];
 
 /// The name of a motor with what its default drive lacks, where that is more than allowed.
 fn too_much(motor: &SelectedMotor) -> Option<String> {
-    let regret = regret(motor).unwrap_or_else(|why| panic!("{}: {why}", motor.source.name))?;
     let name = &motor.source.name;
+    let regret = regret(motor).unwrap_or_else(|why| panic!("{name}: {why}"));
+    let Some(regret) = regret else {
+        return Some(format!("{name}: the default drive trips"));
+    };
     println!(
         "{name}: {:.2} points of torque, {:.2} of ripple",
         regret.torque_pct, regret.ripple_pct

@@ -82,6 +82,18 @@ impl EmfShape {
         !matches!(self, Self::Trapezoidal { .. })
     }
 
+    /// The shape in the mirror: -f(-theta), which a rotor shows that turns backward.
+    #[must_use]
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Harmonics { sines, cosines } => Self::Harmonics {
+                sines,
+                cosines: cosines.map(|cosine| -cosine),
+            },
+            symmetrical => symmetrical,
+        }
+    }
+
     /// Unit EMF of phase a at `theta` radians.
     pub fn unit(self, theta: f64) -> f64 {
         let theta = wrap_pi(theta);

@@ -56,10 +56,9 @@ type Rows = [[[u8; 4]; 2]; 6];
 
 /// The table of a drive: 4 sets of 64, each sector 0 to 7, commutating, 2 H_a + H_b.
 pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
-    let derived = |design| derive(options.candidates, shape, design);
-    let braking = derived(&BRAKING);
-    let forward = match options.table {
-        SwitchingTable::Derived => derived(&MOTORING),
+    let braking = |shape| derive(options.candidates, shape, &BRAKING);
+    let motoring = |shape| match options.table {
+        SwitchingTable::Derived => derive(options.candidates, shape, &MOTORING),
         SwitchingTable::Printed => printed(),
         SwitchingTable::Given(numbers) => std::array::from_fn(|k| {
             std::array::from_fn(|state| {
@@ -68,7 +67,13 @@ pub fn switching_table(options: &PhccSpec, shape: EmfShape) -> Vec<i32> {
         }),
     };
     let mut table = vec![0; SETS * PER_SET];
-    let sets = [forward, mirrored(&forward), braking, mirrored(&braking)];
+    let backward = shape.reversed();
+    let sets = [
+        motoring(shape),
+        mirrored(&motoring(backward)),
+        braking(shape),
+        mirrored(&braking(backward)),
+    ];
     for (set, rows) in sets.iter().enumerate() {
         for (k, states) in rows.iter().enumerate() {
             let start = PER_SET * set + PER_SECTOR * (k + 1);

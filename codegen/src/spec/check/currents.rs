@@ -139,11 +139,12 @@ pub(super) fn bus(inverter: &Inverter, trip: f64, errors: &mut Collector) -> Bus
 /// The `rated` current. The rated torque of a sinusoidal EMF may be that of a quasi-square current,
 /// as in block commutation; a sine has up to 2/sqrt(3) of its peak without more heat.
 fn default_max(motor: &Motor, controller: &ControllerSpec, rated: f64) -> f64 {
-    let is_sine = motor.emf_shape == Some(EmfShape::Sinusoidal)
+    let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
+    let is_sine = !matches!(shape, EmfShape::Trapezoidal { .. })
         && controller.common().reference == Reference::Proportional;
     let per_ampere = motor
         .emf_constant
-        .map(|constant| EmfShape::Sinusoidal.proportional_factor() * constant);
+        .map(|constant| shape.proportional_factor() * constant);
     match (&motor.rated_torque, per_ampere) {
         (Some(torque), Some(per_ampere)) if is_sine => {
             (torque.si / per_ampere).clamp(rated, rated * 2.0 / 3.0_f64.sqrt())

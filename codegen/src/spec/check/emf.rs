@@ -136,6 +136,16 @@ fn refuse(given: &Given, basis: Basis, remedy: &str, errors: &mut Collector) {
     ));
 }
 
+/// A trace between two terminals does not show the harmonics of a phase that cancel there, so nothing of
+/// a phase alone can be compared with it.
+pub(super) fn refuse_phase(all: &[Emf], errors: &mut Collector) {
+    let of_phase = |stated: &&Emf| matches!(stated.reading, Reading::PhasePeak | Reading::PhaseRms);
+    if let Some(stated) = all.iter().find(of_phase) {
+        let remedy = "a trace between two terminals does not show the third harmonic of a phase; give the constant with `line_to_line`";
+        refuse(&stated.given, Basis::Phase, remedy, errors);
+    }
+}
+
 /// The EMF constant, whose basis must be stated and possible.
 fn read_back_emf<'a>(
     reader: &Reader<'a>,

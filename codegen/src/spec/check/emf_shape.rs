@@ -15,9 +15,13 @@ const MOST_FOREIGN: f64 = 0.03;
 /// Largest difference between a trace's amplitude and that of the EMF constant, relative.
 const MOST_APART: f64 = 0.05;
 
-/// Least length of the EMF in the plane over that of its fundamental: a current in proportion to the
+/// Least part of the EMF in the plane along its fundamental, over that: a current in proportion to the
 /// EMF grows with its inverse.
-const LEAST_LENGTH: f64 = 0.5;
+const LEAST_ALONG: f64 = 0.5;
+
+/// Greatest sum of the harmonics' amplitudes over the fundamental's, each times its order: a shape's
+/// slope. A square wave of the orders taken has 8.
+const STEEPEST: f64 = 8.0;
 
 /// What `emf_shape` says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,8 +46,8 @@ const OF_KIND: [(&str, Kind, &str); 6] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stated {
     pub shape: EmfShape,
-    /// Greatest voltage between two terminals in a trace.
-    pub trace_peak: Option<f64>,
+    /// The trace that it was taken from.
+    pub trace: Option<Trace>,
 }
 
 /// Reads the shape.
@@ -70,14 +74,11 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Option<Stated> {
             let trace = read_trace(reader, errors)?;
             return Some(Stated {
                 shape: EmfShape::Harmonics(trace.shape),
-                trace_peak: Some(trace.peak),
+                trace: Some(trace),
             });
         }
     };
-    Some(Stated {
-        shape,
-        trace_peak: None,
-    })
+    Some(Stated { shape, trace: None })
 }
 
 /// Data of another shape than the stated one.
@@ -126,6 +127,11 @@ fn read_harmonics(reader: &Reader, errors: &mut Collector) -> Option<Harmonics> 
             return None;
         }
     }
+    if orders.is_empty() {
+        let problem = "no order; give at least one, or `sinusoidal` as `emf_shape`";
+        refuse(reader, "emf_orders", problem, errors);
+        return None;
+    }
     let is_odd = |order: i64| order % 2 == 1 && (3..=23).contains(&order);
     let wrong = (0..orders.len()).find(|&k| !is_odd(orders[k]) || orders[..k].contains(&orders[k]));
     if let Some(wrong) = wrong {
@@ -143,22 +149,29 @@ fn read_harmonics(reader: &Reader, errors: &mut Collector) -> Option<Harmonics> 
     plausible(Harmonics::of(stated), reader, "emf_amplitudes", errors)
 }
 
-/// The shape, unless its EMF nearly vanishes somewhere.
+/// The shape, unless its EMF nearly vanishes somewhere, or changes too fast.
 fn plausible(
     shape: Harmonics,
     reader: &Reader,
     field: &'static str,
     errors: &mut Collector,
 ) -> Option<Harmonics> {
-    let length = EmfShape::Harmonics(shape).least_length() / shape.fundamental();
-    if length >= LEAST_LENGTH {
+    let (along, steep) = (shape.least_along(), shape.steepness());
+    let problem = if along < LEAST_ALONG {
+        format!(
+            "along its fundamental the EMF of the three phases falls to {} % of it, below {} %, at some angle; no current in proportion to it suits a motor: lower the harmonics",
+            significant(100.0 * along),
+            100.0 * LEAST_ALONG,
+        )
+    } else if steep > STEEPEST {
+        format!(
+            "the amplitudes times their orders are {} % of the fundamental, above {} %; no winding is so steep: lower the harmonics of high order",
+            significant(100.0 * steep),
+            100.0 * STEEPEST,
+        )
+    } else {
         return Some(shape);
-    }
-    let problem = format!(
-        "the EMF of the three phases falls to {} % of its fundamental, below {} %, at some angle; no current in proportion to it suits a motor: lower the harmonics",
-        significant(100.0 * length),
-        100.0 * LEAST_LENGTH,
-    );
+    };
     refuse(reader, field, &problem, errors);
     None
 }
@@ -206,13 +219,13 @@ pub(super) fn check_amplitude(
 ) {
     const FIELD: &str = "emf_samples_speed";
     let speed = reader.plain_quantity(errors, FIELD);
-    let (Some(speed), Some(peak)) = (speed, stated.trace_peak) else {
+    let (Some(speed), Some(Trace { peak, .. })) = (speed, stated.trace) else {
         return;
     };
     let expected = constant * stated.shape.line_to_line_peak() * speed.si;
     if (peak / expected - 1.0).abs() > MOST_APART {
         let problem = format!(
-            "at {} rpm the samples peak at {} V, and the EMF constant says {} V between two terminals; correct one of the two, or leave the speed out",
+            "at {} rpm the samples peak at {} V, and the EMF constant says {} V between two terminals; correct one of the two",
             significant(speed.si * 60.0 / TAU),
             significant(peak),
             significant(expected),

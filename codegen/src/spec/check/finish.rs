@@ -161,8 +161,11 @@ fn stall_timeout(
         (Some(given), _) => given.si,
         (None, Some(pole_pairs)) if is_speed_expected => {
             let [_, widest] = motor.extreme_sectors();
-            let sector = FRAC_PI_3 * widest / (minimum_speed * f64::from(pole_pairs));
-            STALL_TIMEOUT.max(STALL_SECTORS * sector)
+            let angle = FRAC_PI_3 * widest / f64::from(pole_pairs);
+            // A ramp of the set-point may reverse within a sector: down to rest and up again.
+            let limit = controller.and_then(|spec| spec.common().speed?.acceleration_limit);
+            let reversal = limit.map_or(0.0, |limit| 2.0 * (2.0 * angle / limit).sqrt());
+            STALL_TIMEOUT.max(STALL_SECTORS * (angle / minimum_speed).max(reversal))
         }
         (None, _) => 0.0,
     }

@@ -206,8 +206,8 @@ pub struct PlantArguments {
     #[arg(long, value_name = "X", value_parser = quantity::factor, allow_hyphen_values = true)]
     pub scale_kb: Option<f64>,
     /// True shape of the EMF, at the same peak between two terminals: `sinusoidal`,
-    /// `trapezoidal:100` (flat top in degrees), or `harmonics:5=4,7=-2` (order and percent of the
-    /// fundamental)
+    /// `trapezoidal:100` (flat top in degrees), or `harmonics:5=4,7=-2@20` (order, percent of the
+    /// fundamental, and phase in degrees)
     #[arg(long, value_name = "SHAPE", value_parser = quantity::emf_shape)]
     pub emf_shape: Option<EmfShape>,
     /// Placement error of the Hall sensors in electrical degrees: one angle for all three, or

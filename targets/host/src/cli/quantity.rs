@@ -153,27 +153,34 @@ pub(super) fn emf_shape(text: &str) -> Result<EmfShape, String> {
         }
         ("harmonics", list) if !list.is_empty() => {
             let harmonics = list.split(',').map(harmonic);
-            let series = Harmonics::of(harmonics.collect::<Result<Vec<_>, _>>()?);
-            Ok(EmfShape::Harmonics(series))
+            let harmonics = harmonics.collect::<Result<Vec<_>, _>>()?;
+            let orders: std::collections::BTreeSet<u32> =
+                harmonics.iter().map(|harmonic| harmonic.0).collect();
+            if orders.len() < harmonics.len() {
+                return Err(format!("`{list}` gives an order twice"));
+            }
+            Ok(EmfShape::Harmonics(Harmonics::of(harmonics)))
         }
         _ => Err(
-            "give `sinusoidal`, `trapezoidal:100` or `harmonics:5=4,7=-2`: a flat top in degrees, or orders and percents of the fundamental"
+            "give `sinusoidal`, `trapezoidal:100` or `harmonics:5=4,7=-2@20`: a flat top in degrees, or orders, percents of the fundamental and phases in degrees"
                 .to_owned(),
         ),
     }
 }
 
-/// `5=4`: order, share of the fundamental and phase of a harmonic.
+/// `5=4` or `5=4@20`: order, share of the fundamental and phase of a harmonic.
 fn harmonic(text: &str) -> Result<(u32, f64, f64), String> {
     let wrong =
         || format!("`{text}` is not an odd order from 3 to 23 and a percentage, as in `5=4`");
     let (order, share) = text.split_once('=').ok_or_else(wrong)?;
+    let (share, phase) = share.split_once('@').unwrap_or((share, "0"));
+    let phase = quantity(phase, Dimension::Angle)?.to_radians();
     let order: u32 = order.trim().parse().map_err(|_| wrong())?;
     let percent = split(share.trim())
         .filter(|(percent, unit)| percent.abs() <= 100.0 && matches!(*unit, "" | "%"));
     let is_odd = order % 2 == 1 && (3..=23).contains(&order);
     match percent {
-        Some((percent, _)) if is_odd => Ok((order, percent / 100.0, 0.0)),
+        Some((percent, _)) if is_odd => Ok((order, percent / 100.0, phase)),
         _ => Err(wrong()),
     }
 }
@@ -230,6 +237,7 @@ mod tests {
             "harmonics:4=3",
             "harmonics:25=1",
             "harmonics:5=101",
+            "harmonics:5=4,5=4",
             "square",
         ] {
             assert!(emf_shape(wrong).is_err(), "{wrong}");

@@ -2,7 +2,7 @@
 
 use crate::cli::{Bar, Failure, print_json, print_table, print_text};
 use clap::Args;
-use hexagen_lab::advise::{Advice, DEVIATING_AT, Point, SPEEDS, Tried, Worst, advise};
+use hexagen_lab::advise::{Advice, DEVIATING_AT, OWN, Point, SPEEDS, Tried, Worst, advise};
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
@@ -47,13 +47,25 @@ fn verdict(advice: &Advice) -> String {
         return format!("{}: {}", advice.motor, advice.reason);
     };
     let variant = advice.tried[recommended].variant;
-    let fields = variant.split_once(':').map_or_else(
-        || format!("kind = \"{variant}\""),
-        |(kind, options)| format!("kind = \"{kind}\" with {}", options.replace(',', ", ")),
-    );
+    let (motor, reason) = (&advice.motor, &advice.reason);
+    if variant == OWN {
+        return format!("{motor}: the motor file's own controller. Why: {reason}.");
+    }
+    let (kind, options) = variant.split_once(':').unwrap_or((variant, ""));
+    let options = options
+        .split(',')
+        .filter_map(|option| option.split_once('='));
+    let lines: Vec<String> = [("kind", kind)]
+        .into_iter()
+        .chain(options)
+        .map(|(name, value)| match value.parse::<f64>() {
+            Ok(_) => format!("  {name} = {value}"),
+            Err(_) => format!("  {name} = \"{value}\""),
+        })
+        .collect();
     format!(
-        "{}: {variant}, that is {fields}. Why: {}.",
-        advice.motor, advice.reason
+        "{motor}: {variant}. Why: {reason}.\nIn the motor file:\n  [controller]\n{}",
+        lines.join("\n")
     )
 }
 

@@ -55,6 +55,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     refuse_present(&options.file, options.force)?;
     let mut draft = Draft::of(given(&options.values)?, &options.file)?;
     if !options.json && std::io::stdin().is_terminal() {
+        // Before questions are asked in vain.
+        checked(&draft.text(), &options.file, false)?;
         draft.ask(&mut std::io::stdin().lock().lines(), &options.file)?;
     }
     let missing = draft.missing();
@@ -241,14 +243,10 @@ impl Draft {
 
     /// Takes an answer, unless it is wrong whatever else is given; says so then.
     fn takes(&mut self, name: &str, value: &str, file: &Path) -> bool {
+        let before = self.wrong(file);
         self.values.push((name.to_owned(), value.to_owned()));
-        // What a value needs beside it may be answered yet.
-        let is_wrong = |code| !matches!(code, Code::MissingField | Code::DependentField);
-        let wrong = errors(&self.text(), file).into_iter();
-        let wrong: Vec<String> = wrong
-            .filter(|error| is_wrong(error.code))
-            .map(|error| error.message)
-            .collect();
+        let mut wrong = self.wrong(file);
+        wrong.retain(|message| !before.contains(message));
         for message in &wrong {
             note(&format!(
                 "{message}\n  Answer again; empty to fill it in later."
@@ -258,6 +256,14 @@ impl Draft {
             self.values.pop();
         }
         wrong.is_empty()
+    }
+
+    /// What is wrong whatever else is given. What a value needs beside it may be answered yet.
+    fn wrong(&self, file: &Path) -> Vec<String> {
+        let is_wrong = |code| !matches!(code, Code::MissingField | Code::DependentField);
+        let all = errors(&self.text(), file).into_iter();
+        let wrong = all.filter(|error| is_wrong(error.code));
+        wrong.map(|error| error.message).collect()
     }
 
     /// The file.
@@ -354,11 +360,13 @@ fn errors(text: &str, file: &Path) -> Vec<Diagnostic> {
     read.err().into_iter().flatten().collect()
 }
 
-/// Whether what was given is right: what is missing is not wrong.
+/// Whether what was given is right: what is missing, and what waits for it, is not wrong.
 fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
     let wrong: Vec<String> = errors(text, file)
         .into_iter()
-        .filter(|error| is_complete || error.code != Code::MissingField)
+        .filter(|error| {
+            is_complete || !matches!(error.code, Code::MissingField | Code::DependentField)
+        })
         .map(|error| error.to_string())
         .collect();
     if wrong.is_empty() {

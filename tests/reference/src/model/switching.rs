@@ -63,7 +63,7 @@ impl Switching {
     pub fn new(spec: &Spec, options: &crate::Phcc) -> Result<Self, Error> {
         let shape = EmfShape::new(&spec.motor)?;
         let pairs = options.candidates != Candidates::ThreePhase;
-        let forward = match &options.table {
+        let motoring = |shape| match &options.table {
             SwitchingTable::Derived => Design::motoring(shape, pairs).rows(),
             SwitchingTable::Printed => printed(),
             SwitchingTable::Given(numbers) => rows(|sector, commutating, [along, across]| {
@@ -74,12 +74,12 @@ impl Switching {
                 numbers[place].into()
             }),
         };
-        let braking_forward = Design::braking(shape, pairs).rows();
+        let braking = |shape| Design::braking(shape, pairs).rows();
         Ok(Self {
-            forward,
-            backward: mirrored(&forward),
-            braking_forward,
-            braking_backward: mirrored(&braking_forward),
+            forward: motoring(shape),
+            backward: mirrored(&motoring(shape.mirrored())),
+            braking_forward: braking(shape),
+            braking_backward: mirrored(&braking(shape.mirrored())),
         })
     }
 

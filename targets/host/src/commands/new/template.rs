@@ -79,7 +79,25 @@ const MOTOR: &[Line] = &[
          # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
         "17.3 V/krpm line_to_line peak",
     ),
-    needed(&["emf_shape"], "trapezoidal, sinusoidal, or the guide's harmonics or samples.", "trapezoidal"),
+    needed(&["emf_shape"], "trapezoidal or sinusoidal; or harmonics, or samples of a trace between two terminals.", "trapezoidal"),
+    needed(
+        &["emf_orders"],
+        "Orders of the phase EMF's harmonics, odd, 3 to 23.",
+        "[5, 7]",
+    )
+    .only_with("emf_shape", "harmonics"),
+    needed(
+        &["emf_amplitudes"],
+        "Their amplitudes over that of the fundamental.",
+        "[\"4 %\", \"-2 %\"]",
+    )
+    .only_with("emf_shape", "harmonics"),
+    needed(
+        &["emf_samples"],
+        "24 to 1000 samples over one electrical period, between two terminals, turned forward.",
+        "[0.0, 1.3, 2.4]",
+    )
+    .only_with("emf_shape", "samples"),
     needed(
         &["rated_current"],
         "Continuous current of a phase: its peak, or rms.",
