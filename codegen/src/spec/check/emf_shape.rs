@@ -213,13 +213,13 @@ fn read_trace(reader: &Reader, errors: &mut Collector) -> Option<Trace> {
 /// is known. `constant`: peak of a phase's EMF over mechanical speed, V s/rad.
 pub(super) fn check_amplitude(
     reader: &Reader,
-    stated: Stated,
+    stated: &Stated,
     constant: f64,
     errors: &mut Collector,
 ) {
     const FIELD: &str = "emf_samples_speed";
     let speed = reader.plain_quantity(errors, FIELD);
-    let (Some(speed), Some(Trace { peak, .. })) = (speed, stated.trace) else {
+    let (Some(speed), Some(peak)) = (speed, stated.trace.map(|trace| trace.peak)) else {
         return;
     };
     let expected = constant * stated.shape.line_to_line_peak() * speed.si;

@@ -60,7 +60,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
         _ => None,
     };
     if let (Some(stated), Some(constant)) = (stated, emf_constant) {
-        emf_shape::check_amplitude(reader, stated, constant, errors);
+        emf_shape::check_amplitude(reader, &stated, constant, errors);
     }
     Motor {
         description: reader.text("description").unwrap_or_default().to_owned(),

@@ -274,7 +274,7 @@ fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
         }
     }
     // Three controllers that modulate, at two speeds.
-    assert_eq!(compared, 3 * 2 * 14);
+    assert_eq!(compared, 3 * 2 * 15);
 }
 
 #[test]
