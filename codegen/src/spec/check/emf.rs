@@ -138,11 +138,13 @@ fn refuse(given: &Given, basis: Basis, remedy: &str, errors: &mut Collector) {
 
 /// A trace between two terminals does not show the harmonics of a phase that cancel there, so nothing of
 /// a phase alone can be compared with it.
-pub(super) fn refuse_phase(all: &[Emf], errors: &mut Collector) {
+pub(super) fn refuse_phase(all: &mut Vec<Emf>, errors: &mut Collector) {
     let of_phase = |stated: &&Emf| matches!(stated.reading, Reading::PhasePeak | Reading::PhaseRms);
     if let Some(stated) = all.iter().find(of_phase) {
         let remedy = "a trace between two terminals does not show the third harmonic of a phase; give the constant with `line_to_line`";
         refuse(&stated.given, Basis::Phase, remedy, errors);
+        // Nothing follows from them.
+        all.clear();
     }
 }
 

@@ -49,9 +49,9 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
     let inductance = read_winding_value(reader, errors, "inductance", winding);
     let stated = emf_shape::read(reader, errors);
     let emf_shape = stated.map(|stated| stated.shape);
-    let emf = emf::read(reader, winding, emf_shape, errors);
+    let mut emf = emf::read(reader, winding, emf_shape, errors);
     if stated.is_some_and(|stated| stated.trace.is_some()) {
-        emf::refuse_phase(&emf, errors);
+        emf::refuse_phase(&mut emf, errors);
     }
     let emf_constant = match (emf.first(), emf_shape, pole_pairs) {
         (Some(stated), Some(shape), Some(pole_pairs)) => {

@@ -76,6 +76,24 @@ fn the_constant_is_that_between_terminals_whatever_the_shape() {
 }
 
 #[test]
+fn a_constant_of_a_phase_is_refused_beside_a_trace() {
+    for constant in ["0.0824 V/(rad/s) phase peak", "20.6 mWb"] {
+        let lines = samples(1.0, line);
+        let motor = include_str!("../../example.toml");
+        let motor = motor.replace("0.1648 V/(rad/s) line_to_line peak", constant);
+        let text = motor.replace("emf_shape = \"trapezoidal\"\n", &format!("{lines}\n"));
+        let told = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+        let told = told.expect_err(constant).to_string();
+        assert!(told.contains("[HX0206]"), "{told}");
+        assert!(
+            told.contains("give the constant with `line_to_line`"),
+            "{told}"
+        );
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
+}
+
+#[test]
 fn traces_that_cannot_be_are_told_with_a_remedy() {
     let phase = Harmonics::of([(3, 0.18, 0.0)]);
     let slow = format!("{}\nemf_samples_speed = \"1200 rpm\"", samples(1.0, line));
