@@ -57,6 +57,10 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             continue;
         };
         match name {
+            // Nothing else in a board's file is that of a motor.
+            "board" if document.get("motor").is_none() => {
+                return Err(catalogue::board_for_motor(&at).into());
+            }
             "motor" => file.read_fields(&mut ast.motor, at, table),
             "inverter" => file.read_fields(&mut ast.inverter, at, table),
             "controller" => file.read_fields(&mut ast.controller, at, table),

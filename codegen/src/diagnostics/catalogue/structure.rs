@@ -20,6 +20,15 @@ pub fn unknown_section(at: &Location, name: &str, known: &[&str]) -> Diagnostic 
     )
 }
 
+/// A board's file in place of a motor's.
+pub fn board_for_motor(at: &Location) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownSection,
+        at,
+        "this is a board's file, without a motor; name it as `board` of a motor's file, or give it as `--board` beside a motor",
+    )
+}
+
 /// A section's name with a value instead of fields.
 pub fn not_a_section(at: &Location, name: &str) -> Diagnostic {
     Diagnostic::new(
