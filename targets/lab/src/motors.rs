@@ -140,6 +140,13 @@ pub fn degrees_per_period(spec: &Spec) -> f64 {
     spec.motor.rated_turn(spec.inverter.t_s)
 }
 
+/// Change of the current in a control period with the bus across two phases, over the rated current.
+pub fn swing(spec: &Spec) -> f64 {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let rise = inverter.v_bus * inverter.t_s / (2.0 * motor.inductance);
+    rise / motor.rated_current
+}
+
 /// Greatest ripple of a drive that is right, percent.
 pub fn greatest_ripple(spec: &Spec) -> f64 {
     let [fine, coarse] = RIPPLE;

@@ -2,7 +2,7 @@
 
 use hexagen_codegen::spec::HallCapture;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
-use hexagen_lab::motors::{Limit, RatedPoint, SPEEDS, degrees_per_period, greatest_ripple};
+use hexagen_lab::motors::{Limit, RatedPoint, SPEEDS, degrees_per_period, greatest_ripple, swing};
 use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
 
@@ -73,20 +73,13 @@ const FASTEST: f64 = 15.0;
 /// current is not its sample, whatever the control does.
 const SWING: f64 = 5.0;
 
-/// That change.
-fn swing(drive: &Prepared) -> f64 {
-    let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
-    let rise = inverter.v_bus * inverter.t_s / (2.0 * motor.inductance);
-    rise / motor.rated_current
-}
-
 /// Nearly all points are right that do not end at the bus.
 #[test]
 fn random_motors_are_right_by_default() {
     // Motors with an edge timer, and periods short enough for them.
     let drawn = random_drives(0, "pdcc", DRAWN, |drive| {
         let is_timed = matches!(drive.spec.inverter.hall_capture, HallCapture::Timer { .. });
-        is_timed && degrees_per_period(&drive.spec) <= FASTEST && swing(drive) <= SWING
+        is_timed && degrees_per_period(&drive.spec) <= FASTEST && swing(&drive.spec) <= SWING
     });
     let points = 16 * drawn.len();
     let wrong: Vec<(String, RatedPoint)> = drawn
