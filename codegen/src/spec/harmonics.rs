@@ -37,12 +37,17 @@ impl Harmonics {
         series.sines[0] = 1.0;
         for (order, amplitude, phase) in harmonics {
             let place = (order / 2) as usize;
-            if order % 2 == 1 && (1..ORDERS).contains(&place) {
+            if Self::has_order(order) {
                 series.sines[place] += amplitude * phase.cos();
                 series.cosines[place] += amplitude * phase.sin();
             }
         }
         series.scaled(1.0 / series.peak())
+    }
+
+    /// Whether an order can be stated: odd, 3 to 23.
+    pub fn has_order(order: u32) -> bool {
+        order % 2 == 1 && (1..ORDERS).contains(&((order / 2) as usize))
     }
 
     fn scaled(self, by: f64) -> Self {
@@ -101,7 +106,7 @@ impl Harmonics {
         squares.sum::<f64>() / 2.0
     }
 
-    /// Least part of the three phases' EMF in the plane along their fundamental, over that.
+    /// Least component of the EMF vector along its fundamental, over the fundamental.
     pub fn least_along(&self) -> f64 {
         let along = |theta: f64| {
             let [a, b, c] = [0.0, 1.0, 2.0].map(|lag| self.at(theta - lag * THIRD));

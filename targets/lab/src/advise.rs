@@ -12,7 +12,6 @@ use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use crate::robustness::measured;
 use crate::{LabError, Progress};
-use hexagen_codegen::ir::PathCost;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -260,9 +259,8 @@ fn limit_of(drive: &Prepared) -> Result<Option<f64>, LabError> {
 }
 
 fn try_drive(variant: &'static str, drive: &Prepared) -> Result<Tried, LabError> {
-    let step = &drive.generated.graph.program().step;
     let mut tried = Tried {
-        operations: Some(PathCost::of_function(step).worst.total()),
+        operations: Some(drive.operations()),
         ..Tried::new(variant)
     };
     for speed in SPEEDS {

@@ -4,7 +4,7 @@ use crate::closed_loop::{Measurement, Trip};
 use crate::engine::{PlantOptions, Prepared, SelectedMotor};
 use crate::{LabError, Progress};
 use hexagen_codegen::design::Envelope;
-use hexagen_codegen::spec::Spec;
+use hexagen_codegen::spec::{HallCapture, Spec};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -140,11 +140,22 @@ pub fn degrees_per_period(spec: &Spec) -> f64 {
     spec.motor.rated_turn(spec.inverter.t_s)
 }
 
-/// Change of the current in a control period with the bus across two phases, over the rated current.
-pub fn swing(spec: &Spec) -> f64 {
+/// Electrical degrees in a control period at rated speed, up to which a drive is right.
+const FASTEST: f64 = 15.0;
+
+/// Greatest change of the current in a control period with the bus across two phases, over the rated
+/// current. Beyond it the pulses' ripple is so large, and decays so fast, that the mean of the
+/// current is not its sample, whatever the control does.
+const SWING: f64 = 5.0;
+
+/// Whether a default drive can be right: it has an edge timer, and its period is short enough for the
+/// motor.
+pub fn can_be_right(spec: &Spec) -> bool {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let is_timed = matches!(inverter.hall_capture, HallCapture::Timer { .. });
     let rise = inverter.v_bus * inverter.t_s / (2.0 * motor.inductance);
-    rise / motor.rated_current
+    let swing = rise / motor.rated_current;
+    is_timed && degrees_per_period(spec) <= FASTEST && swing <= SWING
 }
 
 /// Greatest ripple of a drive that is right, percent.

@@ -1,8 +1,9 @@
 //! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
 
-use hexagen_codegen::spec::HallCapture;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
-use hexagen_lab::motors::{Limit, RatedPoint, SPEEDS, degrees_per_period, greatest_ripple, swing};
+use hexagen_lab::motors::{
+    Limit, RatedPoint, SPEEDS, can_be_right, degrees_per_period, greatest_ripple,
+};
 use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
 
@@ -65,22 +66,11 @@ fn every_library_motor_is_right_by_default() {
 /// Random motors, in a push and in the nightly run.
 const DRAWN: [usize; 2] = [20, 200];
 
-/// Electrical degrees in a control period at rated speed, up to which a drive is right.
-const FASTEST: f64 = 15.0;
-
-/// Greatest change of the current in a control period with the bus across two phases, over the rated
-/// current. Beyond it the pulses' ripple is so large, and decays so fast, that the mean of the
-/// current is not its sample, whatever the control does.
-const SWING: f64 = 5.0;
-
 /// Nearly all points are right that do not end at the bus.
 #[test]
 fn random_motors_are_right_by_default() {
     // Motors with an edge timer, and periods short enough for them.
-    let drawn = random_drives(0, "pdcc", DRAWN, |drive| {
-        let is_timed = matches!(drive.spec.inverter.hall_capture, HallCapture::Timer { .. });
-        is_timed && degrees_per_period(&drive.spec) <= FASTEST && swing(&drive.spec) <= SWING
-    });
+    let drawn = random_drives(0, "pdcc", DRAWN, |drive| can_be_right(&drive.spec));
     let points = 16 * drawn.len();
     let wrong: Vec<(String, RatedPoint)> = drawn
         .par_iter()

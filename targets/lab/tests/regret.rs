@@ -1,10 +1,9 @@
 //! The default drive against the best of all variants: what a person loses who states a motor and nothing
 //! else.
 
-use hexagen_codegen::spec::HallCapture;
 use hexagen_lab::advise::{DEFAULT, Regret, regret};
 use hexagen_lab::engine::{MotorSource, PlantOptions, SelectedMotor};
-use hexagen_lab::motors::{degrees_per_period, swing};
+use hexagen_lab::motors::can_be_right;
 use hexagen_tests::random_motor::{RandomMotor, random_drives};
 
 /// Most torque, percent of the rated one, and most ripple, percent of the mean, that it may lack.
@@ -12,13 +11,6 @@ const MOST: Regret = Regret {
     torque_pct: 1.0,
     ripple_pct: 2.0,
 };
-
-/// Electrical degrees in a control period at rated speed, up to which a drive is right.
-const FASTEST: f64 = 15.0;
-
-/// Greatest change of the current in a control period over the rated one: beyond it the mean of the
-/// current is not its sample, whatever the control does.
-const SWING: f64 = 5.0;
 
 /// Motors whose bus ends the torque at rated speed. There `saturation: nearest` makes 98 and 97 % of it, and
 /// the default, `torque_priority`, 76 and 89 %.
@@ -51,10 +43,7 @@ fn the_default_drive_is_as_good_as_any_on_every_library_motor() {
 
 #[test]
 fn the_default_drive_is_as_good_as_any_on_random_motors() {
-    let drawn = random_drives(1000, DEFAULT, DRAWN, |drive| {
-        let is_timed = matches!(drive.spec.inverter.hall_capture, HallCapture::Timer { .. });
-        is_timed && degrees_per_period(&drive.spec) <= FASTEST && swing(&drive.spec) <= SWING
-    });
+    let drawn = random_drives(1000, DEFAULT, DRAWN, |drive| can_be_right(&drive.spec));
     let motors = drawn.iter().map(|drive| {
         let seed = drive.motor.trim_start_matches("motor ").parse();
         let source = MotorSource {

@@ -132,7 +132,7 @@ fn read_harmonics(reader: &Reader, errors: &mut Collector) -> Option<Harmonics> 
         refuse(reader, "emf_orders", problem, errors);
         return None;
     }
-    let is_odd = |order: i64| order % 2 == 1 && (3..=23).contains(&order);
+    let is_odd = |order: i64| u32::try_from(order).is_ok_and(Harmonics::has_order);
     let wrong = (0..orders.len()).find(|&k| !is_odd(orders[k]) || orders[..k].contains(&orders[k]));
     if let Some(wrong) = wrong {
         let order = orders[wrong];

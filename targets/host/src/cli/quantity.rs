@@ -178,9 +178,8 @@ fn harmonic(text: &str) -> Result<(u32, f64, f64), String> {
     let order: u32 = order.trim().parse().map_err(|_| wrong())?;
     let percent = split(share.trim())
         .filter(|(percent, unit)| percent.abs() <= 100.0 && matches!(*unit, "" | "%"));
-    let is_odd = order % 2 == 1 && (3..=23).contains(&order);
     match percent {
-        Some((percent, _)) if is_odd => Ok((order, percent / 100.0, phase)),
+        Some((percent, _)) if Harmonics::has_order(order) => Ok((order, percent / 100.0, phase)),
         _ => Err(wrong()),
     }
 }

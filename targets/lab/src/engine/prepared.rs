@@ -11,6 +11,7 @@ use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
+use hexagen_codegen::ir::PathCost;
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{
     BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
@@ -258,6 +259,12 @@ impl Prepared {
         };
         let maker = self.maker(Model::Fixed, self.set_point(torque));
         measure(&plant_of(&self.spec), &run, maker)
+    }
+
+    /// Operations on the longest path of a step's law.
+    pub fn operations(&self) -> u32 {
+        let step = &self.generated.graph.program().step;
+        PathCost::of_function(step).worst.total()
     }
 
     /// Rated speed in rpm.

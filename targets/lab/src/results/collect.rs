@@ -12,7 +12,6 @@ use crate::text::significant;
 use crate::verification::{Checked, verify_drives};
 use crate::{LabError, Progress};
 use hexagen_codegen::design::Envelope;
-use hexagen_codegen::ir::PathCost;
 use hexagen_codegen::spec::{HallCapture, KINDS};
 use rayon::prelude::*;
 use std::path::Path;
@@ -127,7 +126,6 @@ impl Plan {
 
     fn results(self, variants: Vec<Variant>) -> Results {
         let own = &self.own;
-        let step = &own.generated.graph.program().step;
         Results {
             generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
             name: own.spec.name.clone(),
@@ -145,7 +143,7 @@ impl Plan {
             variants,
             own: (!self.is_expected).then(|| Own {
                 variant: 0,
-                operations: PathCost::of_function(step).worst.total(),
+                operations: own.operations(),
             }),
             links: Vec::new(),
             errors: Vec::new(),

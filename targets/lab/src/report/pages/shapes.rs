@@ -1,4 +1,4 @@
-//! Signals of the three phases over an electrical turn, without a run.
+//! Plots of the three phases over an electrical turn that need no simulation.
 
 use crate::report::plot::{Columns, FIRST_DEG, Point, Wave, wave};
 use crate::report::{PHASES, Plot};
