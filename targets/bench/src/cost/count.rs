@@ -206,8 +206,12 @@ pub fn count(
     let calls = trace(firmware, program, image, symbol, task, inputs)?;
     let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
     if instructions != traced {
+        let call = (0..).find(|&call| instructions.get(call) != traced.get(call));
+        let [logged, clocked] =
+            [&instructions, &traced].map(|counts| call.and_then(|call| counts.get(call)));
         return Err(BenchError::Failed(format!(
-            "{symbol}: the clock of the core and the log of its instructions count differently"
+            "{symbol}: the clock of the core and the log of its instructions count differently, \
+             first in call {call:?}: {clocked:?} and {logged:?}"
         )));
     }
     Ok(Counts {

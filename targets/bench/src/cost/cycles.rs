@@ -6,6 +6,7 @@
 
 use super::elf::{Class, Image};
 use crate::targets::Target;
+use std::iter;
 use std::ops::Range;
 
 /// Cycles of a division. The Cortex-M4 takes 2 to 12; the Cortex-M0 has none.
@@ -36,7 +37,7 @@ pub fn executed(
 ) -> Vec<Executed> {
     let mut calls = vec![];
     let mut call: Option<Executed> = None;
-    let mut addresses = log.lines().filter_map(address).peekable();
+    let mut addresses = executed_addresses(log).peekable();
     while let Some(at) = addresses.next() {
         if at == function.start && call.is_none() {
             call = Some(Executed {
@@ -63,8 +64,48 @@ pub fn executed(
     calls
 }
 
+/// The addresses of the instructions that were executed.
+///
+/// The emulator logs an instruction before it executes it. If another of its threads interrupts the
+/// core in between, a line `Stopped execution of TB chain before …` follows, and the instruction is
+/// logged once more when the core goes on.
+fn executed_addresses(log: &str) -> impl Iterator<Item = u32> {
+    let mut lines = log.lines().peekable();
+    iter::from_fn(move || {
+        loop {
+            let line = lines.next()?;
+            let is_stopped = lines
+                .next_if(|next| next.starts_with("Stopped execution"))
+                .is_some();
+            if let Some(at) = address(line).filter(|_| !is_stopped) {
+                return Some(at);
+            }
+        }
+    })
+}
+
 /// The address of a line `Trace 0: 0x7f… [00000000/000012ac/…] …`.
 fn address(line: &str) -> Option<u32> {
     let (_, fields) = line.split_once('[')?;
     u32::from_str_radix(fields.split('/').nth(1)?, 16).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of the emulator, interrupted before the second instruction.
+    const LOG: &str = "\
+Trace 0: 0x7fd564020180 [00800400/00004ff2/00000110/ff000201] __addsf3
+Trace 0: 0x7fd564020300 [00800400/00004ff4/00000110/ff000201] __addsf3
+Stopped execution of TB chain before 0x7fd564020300 [00004ff4] __addsf3
+Trace 0: 0x7fd564020300 [00800400/00004ff4/00000110/ff000201] __addsf3
+Trace 0: 0x7fd564020440 [00800400/00004ff6/00000110/ff000201] __addsf3
+";
+
+    #[test]
+    fn an_interrupted_instruction_counts_once() {
+        let addresses: Vec<u32> = executed_addresses(LOG).collect();
+        assert_eq!(addresses, [0x4ff2, 0x4ff4, 0x4ff6]);
+    }
 }
