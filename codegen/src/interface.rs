@@ -82,6 +82,10 @@ pub struct OptionEntry {
     pub value: String,
     /// Meaning.
     pub meaning: &'static str,
+    /// Why it has this value, where nobody stated one and a rule chose it.
+    pub reason: Option<&'static str>,
+    /// Whether it is one of some words or numbers.
+    pub is_choice: bool,
 }
 
 /// Names, documentation and fixed numbers of one controller type.

@@ -90,7 +90,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     };
     let accuracy = || accuracy_constants(scaled.graph.program(), &spec.inverter);
     let (accuracy, description) = at_once(accuracy, description);
-    let interface = interface(spec, &design, &scaled, &description, accuracy);
+    let interface = interface((spec, origins), &design, &scaled, &description, accuracy);
     let Scaled { graph, .. } = scaled;
     errors.into_result(Generated { graph, interface })
 }
@@ -565,7 +565,9 @@ kind = "pdcc"
                 .expect("a number")
         });
         assert!(narrow_bound > 1000.0 * wide_bound, "{doc}");
-        assert_eq!(of("pdcc:target=cortex_m0,word=32"), of("pdcc"));
+        let (stated, chosen) = (of("pdcc:target=cortex_m0,word=32"), of("pdcc"));
+        assert_eq!(stated.graph, chosen.graph);
+        assert_eq!(stated.interface.spec_toml, chosen.interface.spec_toml);
         for target in ["cortex_m4", "portable"] {
             assert_eq!(of(&format!("pdcc:target={target}")), of("pdcc"));
         }

@@ -483,9 +483,8 @@ pub fn kind(name: &str) -> Kind {
 /// An option of the table, its default first; the default is not stated, as another option may
 /// forbid stating it.
 fn axis_of_words(rule: &'static Rule) -> Axis {
-    let words: Vec<&str> = rule.words().iter().map(|word| word.word).collect();
-    let default = rule.preset_value().unwrap_or(words[0]);
-    let others = words.into_iter().filter(|word| *word != default);
+    let default = rule.preset_value().unwrap_or("by_default");
+    let words = rule.words().iter().map(|word| word.word);
     let stated = |name| Value {
         name,
         settings: vec![("controller", rule.name, format!("\"{name}\""))],
@@ -497,7 +496,7 @@ fn axis_of_words(rule: &'static Rule) -> Axis {
     Axis {
         name: rule.name,
         values: std::iter::once(unstated)
-            .chain(others.map(stated))
+            .chain(words.filter(|word| *word != default).map(stated))
             .collect(),
     }
 }

@@ -13,12 +13,14 @@ use crate::interface::{
     Unit, Units, Watch,
 };
 use crate::scaling::Scaled;
-use crate::spec::{self, CurrentSensing, HallCapture, InverterSpec, Rule, Spec, SpeedLoop};
+use crate::spec::{
+    self, CurrentSensing, HallCapture, InverterSpec, Origins, Rule, Spec, SpeedLoop,
+};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
 pub fn interface(
-    spec: &Spec,
+    (spec, origins): (&Spec, &Origins),
     design: &LoopDesign,
     scaled: &Scaled,
     law: &Description,
@@ -31,7 +33,7 @@ pub fn interface(
         header: header(design, scaled),
         spec_toml: spec.to_toml(),
         envelope: envelope(spec),
-        options: options(spec),
+        options: options(spec, origins),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),
         delay: spec.controller.common().delay,
@@ -131,12 +133,17 @@ fn envelope(spec: &Spec) -> Vec<[f64; 2]> {
     points.to_vec()
 }
 
-fn options(spec: &Spec) -> Vec<OptionEntry> {
+fn options(spec: &Spec, origins: &Origins) -> Vec<OptionEntry> {
     let lines = spec.controller.lines().into_iter();
-    let entry = |(rule, value): (&'static Rule, String)| OptionEntry {
-        name: rule.name,
-        value,
-        meaning: rule.about,
+    let entry = |(rule, value): (&'static Rule, String)| {
+        let is_given = origins.is_given(&format!("controller.{}", rule.name));
+        OptionEntry {
+            name: rule.name,
+            reason: rule.reason(&value).filter(|_| !is_given),
+            value,
+            meaning: rule.about,
+            is_choice: rule.is_choice(),
+        }
     };
     lines.map(entry).collect()
 }

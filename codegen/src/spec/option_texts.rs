@@ -89,7 +89,8 @@ fn alternatives(words: &[Word]) -> String {
 pub(super) fn default(rule: &Rule) -> String {
     match rule.preset {
         Preset::Value(value) => format!("`{value}`"),
-        Preset::Rule(text) => text.to_owned(),
+        Preset::Rule(text, _) => text.to_owned(),
+        Preset::Off(effect) => format!("none: {effect}"),
         Preset::Checked => "needed".to_owned(),
     }
 }
@@ -145,7 +146,37 @@ mod tests {
             text.push('\n');
             text.push_str(&table((kind.own)()));
         }
+        text.push_str("\n## Defaults by rule\n\nThese options follow from others where they are not stated. `hexagen check` and the data sheet print why;\n`hexagen advise` compares the choice with others on a motor.\n\n| option | controller | default | why |\n|---|---|---|---|\n");
+        let own = KINDS
+            .iter()
+            .flat_map(|kind| (kind.own)().into_iter().map(|rule| (kind.name, rule)));
+        let shared = controller::common::LOOP
+            .iter()
+            .chain(controller::common::COMMUTATION)
+            .map(|row| ("all that take it", &row.rule));
+        text.extend(
+            shared
+                .chain(own)
+                .filter_map(|(kind, rule)| chosen(kind, rule)),
+        );
         text
+    }
+
+    /// The row of a default by rule.
+    fn chosen(kind: &str, rule: &Rule) -> Option<String> {
+        let Preset::Rule(text, reasons) = rule.preset else {
+            return None;
+        };
+        let reasons = reasons.iter().map(|(value, why)| match *value {
+            "" => (*why).to_owned(),
+            value => format!("`{value}`: {why}"),
+        });
+        let reasons: Vec<String> = reasons.collect();
+        let reasons = reasons.join("; ");
+        Some(format!(
+            "| `{}` | {kind} | {text} | {reasons} |\n",
+            rule.name
+        ))
     }
 
     fn table<'r>(rules: impl IntoIterator<Item = &'r Rule>) -> String {
@@ -187,8 +218,18 @@ mod tests {
             assert!(!rule.about.is_empty(), "{}", rule.name);
             let value = match rule.preset {
                 Preset::Value(text) => parse_value(schema::field(rule.name), text, &at),
-                Preset::Rule(text) => {
-                    assert!(!text.is_empty(), "{}", rule.name);
+                Preset::Rule(text, reasons) => {
+                    assert!(!text.is_empty() && !reasons.is_empty(), "{}", rule.name);
+                    for (value, why) in reasons {
+                        let words = rule.words();
+                        let is_known = words.iter().any(|word| word.word == *value);
+                        assert!(words.is_empty() || is_known, "{}: {value}", rule.name);
+                        assert!(!why.is_empty(), "{}", rule.name);
+                    }
+                    continue;
+                }
+                Preset::Off(effect) => {
+                    assert!(!effect.is_empty(), "{}", rule.name);
                     continue;
                 }
                 Preset::Checked => panic!("{} has no default", rule.name),

@@ -16,13 +16,19 @@ pub struct Rule {
     pub about: &'static str,
 }
 
+/// A value of a default that follows from other fields, or "" for any, and why it is chosen: a phrase
+/// behind a colon.
+pub(crate) type Reason = (&'static str, &'static str);
+
 /// The default of a field.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Preset {
     /// This value, as it would be written.
     Value(&'static str),
-    /// Computed by the checks; the text says how.
-    Rule(&'static str),
+    /// Computed by the checks; the text says how, and the reasons why.
+    Rule(&'static str, &'static [Reason]),
+    /// None: the option is off, with this effect.
+    Off(&'static str),
     /// Stated in the checks and in the reference page of motor and inverter.
     Checked,
 }
@@ -44,9 +50,15 @@ impl Rule {
         Self { preset, ..self }
     }
 
-    /// Sets a default that follows from other fields.
-    pub(crate) const fn by_default(self, rule: &'static str) -> Self {
-        let preset = Preset::Rule(rule);
+    /// Sets a default that follows from other fields, with the reason for each of its values.
+    pub(crate) const fn by_default(self, rule: &'static str, reasons: &'static [Reason]) -> Self {
+        let preset = Preset::Rule(rule, reasons);
+        Self { preset, ..self }
+    }
+
+    /// Leaves the option off by default, with this effect.
+    pub(crate) const fn off(self, effect: &'static str) -> Self {
+        let preset = Preset::Off(effect);
         Self { preset, ..self }
     }
 
@@ -62,8 +74,29 @@ impl Rule {
     pub fn preset_value(&self) -> Option<&'static str> {
         match self.preset {
             Preset::Value(value) => Some(value),
-            Preset::Rule(_) | Preset::Checked => None,
+            Preset::Rule(..) | Preset::Off(_) | Preset::Checked => None,
         }
+    }
+
+    /// Why a default that follows from other fields has this value, as the normalised
+    /// specification writes it; none for an option without such a rule.
+    pub fn reason(&self, value: &str) -> Option<&'static str> {
+        let Preset::Rule(_, reasons) = self.preset else {
+            return None;
+        };
+        let value = value.trim_matches('"');
+        let (_, reason) = reasons
+            .iter()
+            .find(|(of, _)| of.is_empty() || *of == value)?;
+        Some(reason)
+    }
+
+    /// Whether the option is one of some words or numbers.
+    pub fn is_choice(&self) -> bool {
+        matches!(
+            self.kind,
+            Kind::Choice(_) | Kind::ChoiceOrList(_) | Kind::OneOf(_)
+        )
     }
 
     /// Sets the meaning, a sentence without full stop.

@@ -22,7 +22,7 @@ pub const DEFAULT: &str = "pdcc";
 /// Variants that are tried, the default first.
 pub const VARIANTS: [&str; 16] = [
     DEFAULT,
-    "pdcc:saturation=nearest",
+    "pdcc:saturation=torque_priority",
     "pdcc:saturation=keep_angle",
     "pdcc:common_mode=clamped_low",
     "pdcc:emf=model",

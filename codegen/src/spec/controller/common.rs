@@ -46,8 +46,8 @@ words! {
     /// Limiting of voltages outside the hexagon.
     pub enum LimitRule {
         "keep_angle" = KeepAngle: "the voltage is scaled: shortest code; above the speed limit 10 to 30 % less torque with a quasi-square reference than with the others",
-        "nearest" = Nearest: "nearest point of the hexagon",
-        "torque_priority" = TorquePriority: "the torque-producing component is kept: highest speed limit",
+        "nearest" = Nearest: "nearest point of the hexagon: with a proportional reference as fast as the others, and with less ripple where the bus ends the torque",
+        "torque_priority" = TorquePriority: "the torque-producing component is kept: highest speed limit with a quasi-square reference",
     }
 }
 
@@ -126,7 +126,13 @@ pub(crate) const KIND: Rule = rule::word("kind", "pdcc");
 pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<EmfSource>("emf", "estimated")
-            .by_default("`observer` with pulse-width modulation and `reference: proportional`, unless an `emf_filter` is stated; else `estimated`")
+            .by_default(
+                "`observer` with pulse-width modulation and `reference: proportional`, unless an `emf_filter` is stated; else `estimated`",
+                &[
+                    ("observer", "in time where the EMF turns fast, and corrects wrong motor data"),
+                    ("estimated", "from currents and voltages alone, without an angle between Hall edges"),
+                ],
+            )
             .about("Source of the EMF; `held` only with `modulation: three_phase` of `pdcc`, and with `fcs-mpc` and `phcc` unless `off_leg: physical` applies"),
         |options| Some(word(options.emf)),
     ),
@@ -139,7 +145,13 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     ),
     Row::of(
         rule::choice::<Reference>("reference", "quasi_square")
-            .by_default("`proportional` where pulse-width modulation drives all three legs in every period, without `advance`; else `quasi_square`")
+            .by_default(
+                "`proportional` where pulse-width modulation drives all three legs in every period, without `advance`; else `quasi_square`",
+                &[
+                    ("proportional", "constant torque for every shape of the EMF, at least copper loss"),
+                    ("quasi_square", "two legs carry it, or `advance` moves its sectors"),
+                ],
+            )
             .about("Current reference; `proportional` not with `modulation: pair`"),
         |options| Some(word(options.reference)),
     ),
@@ -151,25 +163,28 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     ),
     Row::of(
         rule::quantity("speed_bandwidth", &[D::Frequency], 0.01, 1e4, "2 Hz")
-            .by_default("1/50 of the electrical frequency at rated speed")
+            .by_default(
+                "1/50 of the electrical frequency at rated speed",
+                &[("", "the speed is a mean over an electrical turn")],
+            )
             .about("Bandwidth of the speed loop, at most 1/8 of the electrical frequency at rated speed; only with `speed_loop: on`"),
         |options| Some(number(options.speed?.bandwidth)),
     ),
     Row::of(
         rule::quantity("acceleration_limit", &[D::SpeedRate], SLOWEST_RATE, 1e6 * SLOWEST_RATE, "5000 rpm/s")
-            .by_default("none: a set-point takes effect at once")
+            .off("a set-point takes effect at once")
             .about("Greatest rate at which the speed loop follows `set_speed`, rpm/s, krpm/s, rad/s2; only with `speed_loop: on`"),
         |options| Some(number(options.speed?.acceleration_limit?)),
     ),
     Row::of(
         rule::quantity("slew_rate", &[D::CurrentRate], 1e-4, 1e9, "200 A/s")
-            .by_default("none: a set-point takes effect at once")
+            .off("a set-point takes effect at once")
             .about("Greatest rate at which the current follows `set_current` and `set_torque`, A/s, A/ms, mA/s; at least `rated_current` in a minute; not with `speed_loop: on`"),
         |options| Some(number(options.slew_rate?)),
     ),
     Row::of(
         rule::quantity("residual_timeout", &[D::Time], 1e-5, LONGEST_RESIDUAL, "5 ms")
-            .by_default("none: the currents are not compared with the voltages")
+            .off("the currents are not compared with the voltages")
             .about("Time, net of periods in which they do, after which currents that do not follow the voltages as the motor's data say trip the drive: a dead current sensor, an open or exchanged phase, wrong motor data; 50 control periods to 65,535; only with `emf: observer`"),
         |options| Some(number(options.residual_periods?)),
     ),
@@ -199,13 +214,25 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     ),
     Row::of(
         rule::one_of("word", &[16, 32], "32")
-            .by_default("32; with `target: cortex_m0` 16 where they suffice")
+            .by_default(
+                "32; with `target: cortex_m0` 16 where they suffice",
+                &[
+                    ("32", "enough for every drive; shorter words save time on a Cortex-M0 only"),
+                    ("16", "they suffice, and a Cortex-M0 multiplies them in one instruction"),
+                ],
+            )
             .about("Word length of the control arithmetic, bits"),
         |options| Some(number(options.word)),
     ),
     Row::of(
         rule::choice::<HallEdges>("hall_capture", "sampled")
-            .by_default("`timer` with a `hall_timer_clock`, else `sampled`")
+            .by_default(
+                "`timer` with a `hall_timer_clock`, else `sampled`",
+                &[
+                    ("timer", "the angle is exact between samples"),
+                    ("sampled", "no clock of a timer is stated"),
+                ],
+            )
             .about("Timing of Hall edges"),
         |_| None,
     ),
@@ -215,22 +242,27 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
 pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
     Row::of(
         rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
-            .by_default("0.5 A, at most a quarter of `rated_current`, at least one ADC count")
+            .by_default(
+                "0.5 A, at most a quarter of `rated_current`, at least one ADC count",
+                &[("", "less is noise of the ADC, more ends a commutation early")],
+            )
             .about("Outgoing phase current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
         |options| Some(number(options.commutation_threshold)),
     ),
     Row::of(
         rule::quantity("commutation_timeout", &[D::Periods, D::Time], 1.0, 255.0, "8 periods")
-            .by_default("4 L I/(v_bus Ts), 4 to 255 periods")
+            .by_default(
+                "4 L I/(v_bus Ts), 4 to 255 periods",
+                &[("", "four times as long as the bus takes to end the rated current of a phase")],
+            )
             .about("Commutation time-out, periods or time; only where a leg is turned off"),
         |options| Some(number(options.commutation_timeout)),
     ),
 ];
 
-/// The rule of the saturation, by default `preset`.
-pub(crate) const fn saturation(preset: &'static str) -> Rule {
+/// The rule of the saturation, without a default.
+pub(crate) const fn saturation() -> Rule {
     rule::choice::<LimitRule>("saturation", "torque_priority")
-        .preset(preset)
         .about("Limiting of voltages outside the hexagon")
 }
 
@@ -246,7 +278,13 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
 
 /// The rule of the mean of three pulsed legs.
 pub(crate) const COMMON_MODE: Rule = rule::choice::<CommonMode>("common_mode", "clamped_low")
-    .by_default("`readable` with `current_sensing: low_side` or a `minimum_low_time`, else `centred`")
+    .by_default(
+        "`readable` with `current_sensing: low_side` or a `minimum_low_time`, else `centred`",
+        &[
+            ("readable", "each leg must be low for its sensor or its bootstrap"),
+            ("centred", "least ripple of the three"),
+        ],
+    )
     .about("Where the pulses of three legs lie, which makes no difference to the motor's mean voltages");
 
 /// Its value in the normalised specification: left out where the pulses are centred.

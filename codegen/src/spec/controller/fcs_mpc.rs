@@ -66,7 +66,13 @@ impl Options for FcsMpcSpec {
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::choice::<Candidates>("candidates", "table2")
-                .by_default("`three_phase` with `horizon: 2` or `current_sensing: low_side`, else `table2`")
+                .by_default(
+                    "`three_phase` with `horizon: 2` or `current_sensing: low_side`, else `table2`",
+                    &[
+                        ("three_phase", "no leg is off, so that all currents are seen and sequences stay few"),
+                        ("table2", "a leg is off between commutations, which switches least"),
+                    ],
+                )
                 .about("Candidate vectors"),
             |options| Some(word(options.candidates)),
         ),
@@ -85,13 +91,13 @@ impl Options for FcsMpcSpec {
         ),
         Row::of(
             rule::quantity("switching_weight", &[D::Current], 1e-4, 1e4, "0.5 A")
-                .by_default("none")
+                .off("changes of state cost nothing")
                 .about("Cost of one leg's change of state, as a current error: fewer changes, more ripple; below the change of current by one vector per period; not with `modulated: on`"),
             |options| if_any(options.switching_weight),
         ),
         Row::of(
             rule::plain("torque_weight", 1e-3, 100.0, "2")
-                .by_default("none")
+                .off("errors of both axes weigh the same")
                 .about("Weight of the squared torque-producing error, along the sector's mean EMF: torque accuracy before the currents' shape; not with `modulated: on`"),
             |options| if_any(options.torque_weight),
         ),

@@ -46,7 +46,7 @@ impl Options for PPwmSpec {
                 .about("Crossover of the current loop"),
             |options| Some(number(options.bandwidth)),
         ),
-        Row::of(common::saturation("nearest"), |options| {
+        Row::of(common::saturation().preset("nearest"), |options| {
             Some(word(options.saturation))
         }),
         Row::of(common::COMMON_MODE, |options| {

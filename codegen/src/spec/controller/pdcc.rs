@@ -46,9 +46,22 @@ impl Options for PdccSpec {
                 .about("Modulation of the deadbeat voltage"),
             |options| Some(word(options.modulation)),
         ),
-        Row::of(common::saturation("torque_priority"), |options| {
-            Some(word(options.saturation))
-        }),
+        Row::of(
+            common::saturation().by_default(
+                "`nearest` with `reference: proportional`, `torque_priority` with `quasi_square`",
+                &[
+                    (
+                        "nearest",
+                        "as fast as the others with a proportional current, with least ripple",
+                    ),
+                    (
+                        "torque_priority",
+                        "highest speed limit with a quasi-square current",
+                    ),
+                ],
+            ),
+            |options| Some(word(options.saturation)),
+        ),
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)
         }),
@@ -60,7 +73,6 @@ impl Options for PdccSpec {
     /// The modulation `table2` is known from the literature, but not available.
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let modulation = reader.choice_or_preset(errors, "modulation", &["table2"]);
-        let saturation = reader.choice_or_preset(errors, "saturation", &[]);
         let without_sectors = modulation == Modulation::ThreePhase;
         let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
         if without_sectors {
@@ -74,7 +86,9 @@ impl Options for PdccSpec {
             advance_idle: without_sectors,
             uses_emf: true,
         };
+        let saturation = reader.choice(errors, "saturation", &[]);
         let common = read_common(reader, surroundings, traits, errors)?;
+        let saturation = saturation.unwrap_or_else(|| saturation_with(common.reference));
         if common.emf == EmfSource::Held && modulation == Modulation::Pair {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);
@@ -120,5 +134,14 @@ impl Options for PdccSpec {
 
     fn modulates(&self) -> bool {
         true
+    }
+}
+
+/// Torque priority holds the torque of a quasi-square current up to higher speeds. A proportional
+/// current reaches as far with the nearest voltage, and ripples less where the bus ends the torque.
+fn saturation_with(reference: Reference) -> LimitRule {
+    match reference {
+        Reference::Proportional => LimitRule::Nearest,
+        Reference::QuasiSquare => LimitRule::TorquePriority,
     }
 }

@@ -95,13 +95,22 @@ impl Options for PhccSpec {
         ),
         Row::of(
             rule::quantity("band", &[D::Current], 1e-4, 1e4, "0.5 A")
-                .by_default("2.5 % of `rated_current`")
+                .by_default(
+                    "2.5 % of `rated_current`",
+                    &[("", "narrower than what one vector changes in a period on most motors")],
+                )
                 .about("Half width of both bands, below the rated current"),
             |options| Some(number(options.band)),
         ),
         Row::of(
             rule::choice::<PhccCandidates>("candidates", "table2")
-                .by_default("`three_phase` with `current_sensing: low_side`, else `table2`")
+                .by_default(
+                    "`three_phase` with `current_sensing: low_side`, else `table2`",
+                    &[
+                        ("three_phase", "no leg is off, so that sensors in the low legs see all currents"),
+                        ("table2", "a leg is off between commutations, which switches least"),
+                    ],
+                )
                 .about("Candidate vectors of the derived table"),
             |options| Some(word(options.candidates)),
         ),

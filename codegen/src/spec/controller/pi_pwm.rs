@@ -68,13 +68,19 @@ impl Options for PiPwmSpec {
         ),
         Row::of(
             rule::quantity("integral_time", &[D::Time], 1e-6, 10.0, "1.6 ms")
-                .by_default("L/R")
+                .by_default("L/R", &[("", "cancels the winding's time constant")])
                 .about("Integral time; also that of the anti-windup"),
             |options| Some(number(options.integral_time)),
         ),
         Row::of(
             rule::choice::<bool>("feed_forward", "on")
-                .by_default("`on`; with `six_step: on` `off`")
+                .by_default(
+                    "`on`; with `six_step: on` `off`",
+                    &[
+                        ("on", "the integral need not follow the EMF"),
+                        ("off", "the conventional drive has none"),
+                    ],
+                )
                 .about("EMF feed-forward"),
             |options| Some(word(options.feed_forward)),
         ),
@@ -90,7 +96,7 @@ impl Options for PiPwmSpec {
                 .about("Modulation"),
             |_| None,
         ),
-        Row::of(common::saturation("nearest"), |options| {
+        Row::of(common::saturation().preset("nearest"), |options| {
             Some(word(options.saturation))
         }),
         Row::of(DEAD_TIME_COMPENSATION, |options| {

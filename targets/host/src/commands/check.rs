@@ -51,6 +51,17 @@ pub struct Point {
     pub tripped: Option<Trip>,
 }
 
+/// An option that a rule chose.
+#[derive(Clone, Debug, Serialize)]
+pub struct Chosen {
+    /// Option.
+    pub option: &'static str,
+    /// Value.
+    pub value: String,
+    /// Why.
+    pub reason: &'static str,
+}
+
 /// What was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Checked {
@@ -76,6 +87,8 @@ pub struct Checked {
     /// Greatest current returned to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_current_limit_a: Option<f64>,
+    /// Words and numbers that a rule chose for options that nobody stated.
+    pub chosen: Vec<Chosen>,
     /// Runs, slow and at rated speed.
     pub points: Vec<Point>,
     /// Warnings of the generator.
@@ -139,6 +152,7 @@ impl Checked {
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
             return_current_limit_a: inverter.bus_currents.returned,
+            chosen: chosen(drive),
             points,
             warnings: drive.warnings.clone(),
         };
@@ -205,7 +219,7 @@ impl Checked {
         format!("{what} {torque} % of the torque")
     }
 
-    /// At most ten lines of at most 100 columns.
+    /// At most sixteen lines of at most 100 columns.
     fn lines(&self, drive: &Prepared, next: &str) -> Vec<String> {
         let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
         let common = drive.spec.controller.common();
@@ -257,6 +271,16 @@ impl Checked {
             ),
         ];
         lines.extend(self.limits_of_bus());
+        let mut heading = "by rule";
+        for Chosen {
+            option,
+            value,
+            reason,
+        } in &self.chosen
+        {
+            lines.push(format!("{heading:<12}{option} {value}: {reason}"));
+            heading = "";
+        }
         lines.extend(self.points.iter().map(|point| self.line(point)));
         lines.push(format!(
             "stable      with R and L as far off as their tolerances, {:.0} % and {:.0} %",
@@ -295,6 +319,18 @@ impl Checked {
             (None, None) => format!("{head} no torque"),
         }
     }
+}
+
+fn chosen(drive: &Prepared) -> Vec<Chosen> {
+    let options = drive.generated.interface.options.iter();
+    let chosen = options.filter(|option| option.is_choice).map(|option| {
+        Some(Chosen {
+            option: option.name,
+            value: option.value.replace('"', ""),
+            reason: option.reason?,
+        })
+    });
+    chosen.flatten().collect()
 }
 
 /// What the legs reach of the bus, where they must be low for a while.
