@@ -1,4 +1,4 @@
-//! `hexagen check`: whether and how well a drive will work, in ten lines and within a second.
+//! `hexagen check`: whether and how well a drive will work, in fifteen lines and within a second.
 //!
 //! The drive is designed and verified as for generation, and runs on the simulated motor at two
 //! speeds from one start each; `report` compares, measures and plots.
@@ -219,7 +219,7 @@ impl Checked {
         format!("{what} {torque} % of the torque")
     }
 
-    /// At most sixteen lines of at most 100 columns.
+    /// At most fifteen lines of at most 100 columns.
     fn lines(&self, drive: &Prepared, next: &str) -> Vec<String> {
         let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
         let common = drive.spec.controller.common();

@@ -434,7 +434,7 @@ fn limit_ends_where_the_torque_rises_above_the_demand() {
 
 #[test]
 fn limit_has_its_keys_and_agrees_with_simulate() {
-    let controller = "pdcc:saturation=nearest,hall_capture=timer";
+    let controller = "pdcc:saturation=torque_priority,hall_capture=timer";
     let said = run([
         "limit",
         PAPER,
