@@ -45,7 +45,7 @@ fn dead_sensors_open_phases_and_exchanged_wires_are_noticed() {
         ("stuck at 0 A", 0.75),
         ("stuck at its last value", 0.75),
         ("open", 0.7),
-        ("switch stays off", 0.6),
+        ("switch stays off", 0.5),
         ("wires of phases a and b exchanged", 0.5),
         ("Hall sensors Ha and Hb exchanged", 0.5),
     ] {
