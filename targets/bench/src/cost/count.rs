@@ -206,7 +206,8 @@ pub fn count(
     let calls = trace(firmware, program, image, symbol, task, inputs)?;
     let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
     if instructions != traced {
-        let call = (0..).find(|&call| instructions.get(call) != traced.get(call));
+        let mut calls = 0..instructions.len().max(traced.len());
+        let call = calls.find(|&call| instructions.get(call) != traced.get(call));
         let [logged, clocked] =
             [&instructions, &traced].map(|counts| call.and_then(|call| counts.get(call)));
         return Err(BenchError::Failed(format!(
