@@ -1,7 +1,8 @@
 //! The motor library, and how well each motor's default drive does.
 
-use crate::closed_loop::{Measurement, Trip};
-use crate::engine::{PlantOptions, Prepared, SelectedMotor};
+use crate::closed_loop::{ClosedLoop, Measurement, Trip};
+use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use crate::plant::{Mechanics, Plant};
 use crate::{LabError, Progress};
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::spec::{HallCapture, Spec};
@@ -13,6 +14,9 @@ const CONTROLLER: &str = "pdcc";
 
 /// Speeds, percent of the rated one.
 pub const SPEEDS: [u32; 4] = [5, 25, 60, 100];
+
+/// Both directions, motoring and braking: the signs of the speed and of the power.
+const QUADRANTS: [(i32, i32); 4] = [(1, 1), (1, -1), (-1, 1), (-1, -1)];
 
 /// Greatest distance of the mean torque from the demand, percent.
 pub const TORQUE: f64 = 1.0;
@@ -117,6 +121,23 @@ impl RatedPoint {
         })
     }
 
+    /// Runs a drive at each of [`SPEEDS`] in both directions, motoring and braking; each point with its
+    /// speed in percent, negative backward, and 1 for motoring, -1 for braking.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn of_quadrants(drive: &Prepared) -> Result<Vec<(Self, i32, i32)>, LabError> {
+        let places = SPEEDS.iter().flat_map(|speed| {
+            let at = |(turn, mode): (i32, i32)| (turn * speed.cast_signed(), turn * mode, mode);
+            QUADRANTS.map(at)
+        });
+        let run = |(speed, sign, mode)| {
+            let point = Self::measure(drive, speed, f64::from(sign))?;
+            Ok((point, speed, mode))
+        };
+        places.map(run).collect()
+    }
+
     /// Whether torque and ripple are right; `most`: greatest ripple, percent.
     pub fn is_right(&self, most: f64) -> bool {
         let holds = |torque: f64| (torque - 100.0).abs() <= TORQUE;
@@ -132,6 +153,60 @@ impl RatedPoint {
         } else {
             Limit::ControlPeriod
         }
+    }
+}
+
+/// A start on a free shaft.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FreeStart {
+    /// Seconds from rest to the rated speed; `None` for a drive that trips, or needs more than three
+    /// times as long as with the demanded torque.
+    pub seconds: Option<f64>,
+    /// Trip.
+    pub tripped: Option<Trip>,
+}
+
+/// Longest start, over that at the demanded torque.
+const PATIENCE: f64 = 3.0;
+
+impl FreeStart {
+    /// Runs a drive from rest to its rated speed with its demanded torque, from an electrical angle in
+    /// radians; `sign`: -1 for backward. The shaft has an inertia in kg m2 and no load.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn measure(
+        drive: &Prepared,
+        inertia: f64,
+        angle: f64,
+        sign: f64,
+    ) -> Result<Self, LabError> {
+        let torque = sign * drive.demand();
+        let (rated, t_s) = (drive.spec.motor.rated_speed, drive.spec.inverter.t_s);
+        let mut params = plant_of(&drive.spec);
+        params.mechanics = Some(Mechanics {
+            inertia,
+            opposing_torque: 0.0,
+            external_torque: 0.0,
+            viscous: 0.0,
+        });
+        let run = run_of(&drive.spec, 0.0, torque);
+        let plant = Plant::new(params, angle, 0.0)?;
+        let engine = drive.engine(Model::Fixed, drive.set_point(torque));
+        let mut closed = ClosedLoop::new(plant, engine, run.delay);
+        let longest = run.wait + PATIENCE * inertia * rated / torque.abs();
+        let mut periods = 0;
+        let mut is_there = false;
+        while !is_there && closed.tripped().is_none() && f64::from(periods) * t_s < longest {
+            closed.run(1, &mut ());
+            periods += 1;
+            is_there = sign * closed.plant().truth().omega_m >= rated;
+        }
+        let tripped = closed.tripped();
+        Ok(Self {
+            seconds: (is_there && tripped.is_none()).then(|| f64::from(periods) * t_s),
+            tripped,
+        })
     }
 }
 

@@ -1,66 +1,188 @@
 //! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
 
+mod exact;
+
+use exact::least_ripple;
+use hexagen_codegen::design::Envelope;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::motors::{
-    Limit, RatedPoint, SPEEDS, can_be_right, degrees_per_period, greatest_ripple,
+    FreeStart, Limit, RatedPoint, SPEEDS, can_be_right, degrees_per_period, greatest_ripple,
 };
 use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
 
-/// Points at which a default drive is not right: motor, speed in percent. Control begins at the
-/// demanded torque, whatever the speed.
-const LIMITED: [(&str, u32); 3] = [
-    // The bus is too low for this motor's EMF.
-    ("anaheim-bly341s", 100),
-    // A period is as long as the current's rise.
-    ("br2804-1700kv", 100),
-    ("velineon-3500", 100),
+/// A point at which a default drive is not right: motor, speed in percent, and why.
+type Limited = (&'static str, u32, Limit);
+
+/// Limited points of the library. Control begins at the demanded torque, whatever the speed.
+const LIBRARY: [Limited; 3] = [
+    ("anaheim-bly341s", 100, Limit::BusVoltage),
+    ("br2804-1700kv", 100, Limit::ControlPeriod),
+    ("velineon-3500", 100, Limit::ControlPeriod),
 ];
 
-/// The points at which a drive is not right: speed in percent, negative backward, and 1 for
-/// motoring, -1 for braking.
-fn wrong(drive: &Prepared) -> Vec<(RatedPoint, i32, i32)> {
-    let most = greatest_ripple(&drive.spec);
-    let mut wrong = Vec::new();
-    for speed in SPEEDS.map(|share| share as i32) {
-        for (turn, mode) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
-            let sign = f64::from(turn * mode);
-            let point = RatedPoint::measure(drive, turn * speed, sign).expect("runs");
-            if !point.is_right(most) {
-                wrong.push((point, turn * speed, mode));
+/// Limited points of the motors set aside.
+const SET_ASIDE: [Limited; 2] = [
+    ("maxon-ec-4pole-30", 100, Limit::ControlPeriod),
+    ("maxon-ec-max-40", 100, Limit::BusVoltage),
+];
+
+/// Speed up to which the bus drives the whole current, percent of the rated one.
+fn envelope(drive: &Prepared) -> f64 {
+    let lasts = Envelope::of(&drive.spec).speed(drive.demand());
+    100.0 * lasts.expect("a speed") / drive.spec.motor.rated_speed
+}
+
+/// Whether a limit follows from the data of motor and inverter, whatever the control.
+fn is_physical(drive: &Prepared, speed: u32, limit: Limit) -> bool {
+    match limit {
+        Limit::BusVoltage => envelope(drive) < f64::from(speed),
+        Limit::ControlPeriod => {
+            let least = least_ripple(drive, speed).unwrap_or_default();
+            // Or a period is as long as the current's rise.
+            least > greatest_ripple(&drive.spec) || !can_be_right(&drive.spec)
+        }
+        Limit::Trip => false,
+    }
+}
+
+/// The points of a drive: speed in percent, negative backward, and 1 for motoring, -1 for braking.
+struct Points<'d> {
+    drive: &'d Prepared,
+    all: Vec<(RatedPoint, i32, i32)>,
+}
+
+impl<'d> Points<'d> {
+    fn of(drive: &'d Prepared) -> Self {
+        let all = RatedPoint::of_quadrants(drive).expect("runs");
+        Self { drive, all }
+    }
+
+    /// Those at which the drive is not right.
+    fn wrong(&self) -> Vec<(RatedPoint, i32, i32)> {
+        let most = greatest_ripple(&self.drive.spec);
+        let all = self.all.iter().copied();
+        all.filter(|(point, ..)| !point.is_right(most)).collect()
+    }
+
+    /// What contradicts the list of limited points.
+    fn unexpected(&self, limited: &[Limited]) -> Vec<String> {
+        let name = &self.drive.motor;
+        let (wrong, mut unexpected) = (self.wrong(), Vec::new());
+        let own: Vec<_> = limited.iter().filter(|(of, ..)| of == name).collect();
+        for &&(_, at, limit) in &own {
+            if !wrong.iter().any(|(point, ..)| point.speed_pct == at) {
+                unexpected.push(format!("{name} is right at {at} % now"));
+            }
+            if !is_physical(self.drive, at, limit) {
+                unexpected.push(format!("{name} at {at} %: not for {limit:?}"));
             }
         }
+        let is_known = |point: &RatedPoint| {
+            let here = (point.speed_pct, point.limit());
+            own.iter().any(|&&(_, at, limit)| (at, limit) == here)
+        };
+        let unknown = wrong.iter().filter(|(point, ..)| !is_known(point));
+        let texts =
+            unknown.map(|(point, speed, mode)| format!("{name} {speed} % {mode}: {point:?}"));
+        unexpected.extend(texts);
+        unexpected
     }
-    wrong
+
+    /// One line: at each speed the torque furthest from the demand and the greatest ripple, percent.
+    fn line(&self) -> String {
+        let (name, spec) = (&self.drive.motor, &self.drive.spec);
+        let (degrees, envelope) = (degrees_per_period(spec), envelope(self.drive));
+        let mut line = format!("{name:22} {degrees:5.2} deg, bus up to {envelope:3.0} %");
+        let wrong = self.wrong();
+        for speed in SPEEDS {
+            let of_speed = |points: &[(RatedPoint, i32, i32)]| {
+                let points = points.iter().map(|(point, ..)| *point);
+                let here = points.filter(|point| point.speed_pct == speed);
+                here.collect::<Vec<_>>()
+            };
+            let here = of_speed(&self.all);
+            let torques = here.iter().filter_map(|point| point.torque_pct);
+            let far = |torque: f64| (torque - 100.0).abs();
+            let torque = torques.reduce(|a, b| if far(b) > far(a) { b } else { a });
+            let ripples = here.iter().filter_map(|point| point.ripple_pct);
+            let (torque, ripple) = (torque.unwrap_or(f64::NAN), ripples.fold(0.0, f64::max));
+            let _ = write!(line, "; {speed} %: {torque:.2} with {ripple:.2}");
+            if let Some(point) = of_speed(&wrong).first() {
+                let _ = write!(line, " ({:?})", point.limit());
+            }
+        }
+        line
+    }
+}
+
+/// Seconds of a start with a load's inertia.
+const LOADED: f64 = 0.25;
+
+/// Start angles, every other one backward.
+const ANGLES: u32 = 12;
+
+/// Failed starts: of the bare rotor, where its inertia is known, and with a load.
+fn failed_starts(drive: &Prepared) -> Vec<String> {
+    let motor = &drive.spec.motor;
+    let load = LOADED * drive.demand() / motor.rated_speed;
+    let shafts = motor.inertia.into_iter().chain([load]);
+    let starts = shafts.flat_map(|inertia| (0..ANGLES).map(move |number| (inertia, number)));
+    let failed = starts.filter_map(|(inertia, number)| {
+        let angle = f64::from(number) * TAU / f64::from(ANGLES);
+        let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
+        let start = FreeStart::measure(drive, inertia, angle, sign).expect("runs");
+        let at = format!("{} {inertia:e} kg m2 {angle:.2} {sign}", drive.motor);
+        start.seconds.is_none().then(|| format!("{at}: {start:?}"))
+    });
+    failed.collect()
+}
+
+/// Checks points and starts of all drives, and prints a line of each.
+fn check(drives: &[Prepared], limited: &[Limited]) {
+    let (lines, unexpected): (Vec<_>, Vec<_>) = drives
+        .par_iter()
+        .map(|drive| {
+            let points = Points::of(drive);
+            let mut unexpected = points.unexpected(limited);
+            unexpected.extend(failed_starts(drive));
+            (points.line(), unexpected)
+        })
+        .unzip();
+    println!("{}", lines.join("\n"));
+    let unexpected = unexpected.concat();
+    assert!(unexpected.is_empty(), "{unexpected:#?}");
+}
+
+fn prepared(motors: &[SelectedMotor]) -> Vec<Prepared> {
+    let drive = |motor: &SelectedMotor| motor.prepare(Some("pdcc")).expect("generates");
+    motors.iter().map(drive).collect()
 }
 
 #[test]
 fn every_library_motor_is_right_by_default() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
-    let drives: Vec<(&str, Prepared)> = motors
+    check(&prepared(&motors), &LIBRARY);
+}
+
+/// Motors of other makers, on which nothing is tuned.
+#[test]
+fn every_motor_set_aside_is_right_by_default() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/set_aside");
+    let files = fs::read_dir(folder).expect("a folder");
+    let mut paths: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
+    paths.sort();
+    let plant = PlantOptions::default();
+    let motors: Vec<_> = paths
         .iter()
-        .map(|motor| {
-            let drive = motor.prepare(Some("pdcc")).expect("generates");
-            (&motor.source.name[..], drive)
-        })
+        .map(|path| SelectedMotor::find(&path.to_string_lossy(), &plant).expect("is a motor"))
         .collect();
-    let unexpected: Vec<String> = drives
-        .par_iter()
-        .flat_map_iter(|(name, drive)| {
-            let found = wrong(drive);
-            let limits = |speed: u32| LIMITED.contains(&(*name, speed));
-            for (_, at) in LIMITED.iter().filter(|(limited, ..)| limited == name) {
-                let is_found = found.iter().any(|(point, ..)| point.speed_pct == *at);
-                assert!(is_found, "{name} is right at {at} % now");
-            }
-            found
-                .into_iter()
-                .filter(|(point, ..)| !limits(point.speed_pct))
-                .map(|(point, speed, mode)| format!("{name} {speed} % {mode}: {point:?}"))
-                .collect::<Vec<_>>()
-        })
-        .collect();
-    assert!(unexpected.is_empty(), "{unexpected:#?}");
+    assert!(motors.len() >= 10, "{paths:?}");
+    check(&prepared(&motors), &SET_ASIDE);
 }
 
 /// Random motors, in a push and in the nightly run.
@@ -76,10 +198,13 @@ fn random_motors_are_right_by_default() {
         .par_iter()
         .flat_map_iter(|drive| {
             let degrees = degrees_per_period(&drive.spec);
-            wrong(drive).into_iter().map(move |(point, speed, mode)| {
-                let at = format!("{} {degrees:.1} deg {speed} % {mode}", drive.motor);
-                (at, point)
-            })
+            Points::of(drive)
+                .wrong()
+                .into_iter()
+                .map(move |(point, speed, mode)| {
+                    let at = format!("{} {degrees:.1} deg {speed} % {mode}", drive.motor);
+                    (at, point)
+                })
         })
         .collect();
     let trips = wrong.iter().filter(|(_, point)| point.tripped.is_some());
