@@ -129,6 +129,8 @@ codes! {
     UnlikeGains = 322,
     /// An over-speed that a run at rated speed may reach, or that is not measured.
     OverSpeed = 323,
+    /// A stall time-out within which a ramp of the speed may reverse without a Hall edge.
+    StallTimeout = 324,
     /// A bus voltage that the board is not made for.
     OutsideOfBoard = 330,
     /// A controller that does not exist.

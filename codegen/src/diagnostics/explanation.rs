@@ -304,6 +304,12 @@ impl Code {
                 "bus_voltage = \"48 V\"\nover_speed = \"2600 rpm\"",
                 "State the speed that the mechanics bear, above every set-point and what it overshoots.",
             ),
+            Self::StallTimeout => say(
+                "A ramp of the speed through zero may bring the rotor to rest and away again within one sector, without a Hall edge. That lasts the longer, the slower the ramp, and must not seem a stalled rotor.",
+                "stall_timeout = \"20 ms\"\nbus_voltage = \"48 V\"\ninertia = \"2e-3 kg m2\"\nspeed_loop = \"on\"\nacceleration_limit = \"500 rpm/s\"",
+                "stall_timeout = \"500 ms\"\nbus_voltage = \"48 V\"\ninertia = \"2e-3 kg m2\"\nspeed_loop = \"on\"\nacceleration_limit = \"500 rpm/s\"",
+                "Lengthen the time-out, or raise acceleration_limit.",
+            ),
             Self::BusMeasurement => say(
                 "The limits of a measured bus lie on either side of the nominal voltage, inside the ADC's range.",
                 "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"50 V\"\nbus_voltage = \"48 V\"",

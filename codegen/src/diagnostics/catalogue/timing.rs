@@ -2,7 +2,7 @@
 
 use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, at_least, at_most, engineering, frequency, rpm_at_least, rpm_at_most,
+    Code, Diagnostic, at_least, at_most, engineering, frequency, rpm, rpm_at_least, rpm_at_most,
     significant,
 };
 
@@ -173,6 +173,21 @@ pub fn over_speed(speed: &Part, rated: &Part, period: &Part, range: [f64; 2]) ->
             ),
         ),
         &[rated, period],
+    )
+}
+
+/// A ramp of the speed may reverse within the stall time-out, without a Hall edge.
+pub fn stall_timeout(timeout: &Part, acceleration: f64, reversal: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::StallTimeout,
+        &timeout.location,
+        format!(
+            "`stall_timeout`: {} is shorter than the {} that a ramp of {} a second may take to reverse without a Hall edge; give at least {}, or raise `acceleration_limit`",
+            timeout.given,
+            engineering(reversal, "s"),
+            rpm(acceleration),
+            engineering(at_least(reversal), "s"),
+        ),
     )
 }
 

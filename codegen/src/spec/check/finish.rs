@@ -94,7 +94,7 @@ pub(super) fn inverter(
         maximum_speed,
         over_speed: inverter.over_speed.as_ref().map(|given| given.si),
         stall_periods: periods(
-            stall_timeout(inverter, motor, controller, minimum_speed),
+            stall_timeout(inverter, motor, controller, minimum_speed, errors),
             t_s,
         ),
         hall_glitches: hall_glitches(reader, inverter, motor, (t_s, maximum_speed), errors),
@@ -155,20 +155,30 @@ fn stall_timeout(
     motor: &Motor,
     controller: Option<&ControllerSpec>,
     minimum_speed: f64,
+    errors: &mut Collector,
 ) -> f64 {
-    let is_speed_expected = controller.is_some_and(|spec| spec.common().speed.is_some());
-    match (&inverter.stall_timeout, motor.pole_pairs) {
-        (Some(given), _) => given.si,
-        (None, Some(pole_pairs)) if is_speed_expected => {
-            let [_, widest] = motor.extreme_sectors();
-            let angle = FRAC_PI_3 * widest / f64::from(pole_pairs);
-            // A ramp of the set-point may reverse within a sector: down to rest and up again.
-            let limit = controller.and_then(|spec| spec.common().speed?.acceleration_limit);
-            let reversal = limit.map_or(0.0, |limit| 2.0 * (2.0 * angle / limit).sqrt());
-            STALL_TIMEOUT.max(STALL_SECTORS * (angle / minimum_speed).max(reversal))
-        }
-        (None, _) => 0.0,
+    let given = inverter.stall_timeout.as_ref();
+    let stated = given.map_or(0.0, |given| given.si);
+    let speed = controller.and_then(|spec| spec.common().speed);
+    let (Some(speed), Some(pole_pairs)) = (speed, motor.pole_pairs) else {
+        return stated;
+    };
+    let [_, widest] = motor.extreme_sectors();
+    let angle = FRAC_PI_3 * widest / f64::from(pole_pairs);
+    // A ramp of the set-point may reverse within a sector: down to rest and up again.
+    let reversal = |limit: f64| 2.0 * (2.0 * angle / limit).sqrt();
+    let Some(given) = given else {
+        let reversal = speed.acceleration_limit.map_or(0.0, reversal);
+        return STALL_TIMEOUT.max(STALL_SECTORS * (angle / minimum_speed).max(reversal));
+    };
+    if let Some(limit) = speed.acceleration_limit
+        && stated > 0.0
+        && stated < reversal(limit)
+    {
+        let error = catalogue::stall_timeout(&given.part, limit, reversal(limit));
+        errors.push(error);
     }
+    stated
 }
 
 /// Samples with a disturbed Hall code that are bridged. The rotor must not leave the next sector
