@@ -108,7 +108,7 @@ fn plain(markdown: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{KINDS, controller, default, sentence, values};
+    use super::{KINDS, controller, default, sentence, shared, values};
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
     use crate::spec::rule::{Kind, Preset, Rule};
@@ -150,15 +150,8 @@ mod tests {
         let own = KINDS
             .iter()
             .flat_map(|kind| (kind.own)().into_iter().map(|rule| (kind.name, rule)));
-        let shared = controller::common::LOOP
-            .iter()
-            .chain(controller::common::COMMUTATION)
-            .map(|row| ("all that take it", &row.rule));
-        text.extend(
-            shared
-                .chain(own)
-                .filter_map(|(kind, rule)| chosen(kind, rule)),
-        );
+        let all = shared().map(|rule| ("all that take it", rule)).chain(own);
+        text.extend(all.filter_map(|(kind, rule)| chosen(kind, rule)));
         text
     }
 

@@ -18,14 +18,14 @@ use std::path::Path;
 /// A point at which a default drive is not right: motor, speed in percent, and why.
 type Limited = (&'static str, u32, Limit);
 
-/// Limited points of the library. Control begins at the demanded torque, whatever the speed.
+/// Points of the library at which bus or control period limits the drive. Each run begins at the demanded torque.
 const LIBRARY: [Limited; 3] = [
     ("anaheim-bly341s", 100, Limit::BusVoltage),
     ("br2804-1700kv", 100, Limit::ControlPeriod),
     ("velineon-3500", 100, Limit::ControlPeriod),
 ];
 
-/// Limited points of the motors set aside.
+/// The same of the motors set aside.
 const SET_ASIDE: [Limited; 2] = [
     ("maxon-ec-4pole-30", 100, Limit::ControlPeriod),
     ("maxon-ec-max-40", 100, Limit::BusVoltage),

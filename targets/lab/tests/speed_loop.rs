@@ -198,7 +198,7 @@ fn a_long_run_up_at_the_limit_ends_without_overshoot() {
     });
 }
 
-/// Longer than the stall time-out, which is off here.
+/// Seconds for which the rotor is held, longer than the default stall time-out, which is off here.
 const HELD: f64 = 2.0;
 
 #[test]
@@ -208,13 +208,8 @@ fn a_rotor_that_was_held_starts_again_without_overshoot() {
         bench.run(0.5, 6.0);
         // More than the current limit overcomes.
         bench.load(4.0);
-        let bandwidth = drive
-            .spec
-            .controller
-            .common()
-            .speed
-            .map(|loop_| loop_.bandwidth);
-        bench.run(0.5, HELD * bandwidth.expect("a speed loop"));
+        let speed = drive.spec.controller.common().speed;
+        bench.run(0.5, HELD * speed.expect("a speed loop").bandwidth);
         let speed = bench.closed.plant().truth().omega_m;
         assert!(speed.abs() < 1e-3, "{name}: {speed} rad/s");
         bench.load(0.3);

@@ -2,23 +2,18 @@
 //! and a ramp of a few periods (`slew_rate`) prevents it.
 
 use hexagen_lab::closed_loop::ClosedLoop;
-use hexagen_lab::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
+use hexagen_lab::engine::{
+    Engine, Model, MotorSource, Prepared, library, plant_of, prepare, run_of,
+};
 use hexagen_lab::plant::Plant;
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_3;
-
-fn library() -> Vec<MotorSource> {
-    let names = hexagen_lab::engine::library()
-        .iter()
-        .map(|motor| motor.name);
-    names.filter_map(MotorSource::of_library).collect()
-}
 
 fn of_variant(source: &MotorSource, variant: &str) -> Prepared {
     prepare(source, Some(variant)).unwrap_or_else(|why| panic!("{}: {why}", source.name))
 }
 
-/// How far the mean torque of a period goes beyond this one, in this direction, in so many periods.
+/// Greatest torque beyond `goal` in a number of periods, Nm, each period's mean; `way`: 1 upward, -1 downward.
 fn beyond(closed: &mut ClosedLoop<Engine<'_>>, periods: usize, goal: f64, way: f64) -> f64 {
     let mut most = f64::MIN;
     for _ in 0..periods {
@@ -68,7 +63,8 @@ fn overshoot(drive: &Prepared) -> f64 {
 fn a_ramp_of_five_periods_keeps_the_overshoot_small() {
     let found: Vec<(String, [f64; 2])> = library()
         .par_iter()
-        .map(|source| {
+        .map(|motor| {
+            let source = &MotorSource::from(motor);
             let plain = of_variant(source, "pdcc");
             let rate = plain.spec.motor.rated_current / (RAMP * plain.spec.inverter.t_s);
             let ramped = of_variant(source, &format!("pdcc:slew_rate={rate} A/s"));

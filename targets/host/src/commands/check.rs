@@ -87,7 +87,7 @@ pub struct Checked {
     /// Greatest current returned to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_current_limit_a: Option<f64>,
-    /// Words and numbers that a rule chose for options that nobody stated.
+    /// Options that nobody stated, with the value that a rule chose; not those of any number.
     pub chosen: Vec<Chosen>,
     /// Runs, slow and at rated speed.
     pub points: Vec<Point>,
