@@ -14,6 +14,9 @@ use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::{limits, sensors};
 use hexagen_reference::{BitTrue, HallCapture, SensedPhases, Spec};
 
+/// The words of the rotor's speed, zero while it is unknown.
+const SPEEDS: [&str; 2] = ["omega", "step_angle"];
+
 /// Generator of states and of samples for them.
 #[derive(Debug)]
 pub struct States<'a> {
@@ -441,7 +444,9 @@ impl<'a> States<'a> {
         }
         // The speed is zero while it is unknown; the turn is the sum of its intervals.
         let edges = set("edges", &|word| word);
-        set("omega", &|word| if edges == 2 { word } else { 0 });
+        for name in SPEEDS {
+            set(name, &|word| if edges == 2 { word } else { 0 });
+        }
         let intervals = ["t1", "t2", "t3", "t4", "t5", "t6"].map(|name| set(name, &|word| word));
         set("rev", &|_| intervals.iter().sum());
         // The off leg has no terminal voltage of its own.
@@ -498,7 +503,7 @@ impl<'a> States<'a> {
             "rev",
         ];
         // These are zero without information.
-        let is_zero = word == 0 && (name == "omega" || name.starts_with("t_"));
+        let is_zero = word == 0 && (SPEEDS.contains(&name) || name.starts_with("t_"));
         i64::from(most) - i64::from(least) >= 1 << 10 && !bound.contains(&name) && !is_zero
     }
 
@@ -566,8 +571,9 @@ impl<'a> States<'a> {
             4 => Watched::Torque,
             5 | 6 => {
                 // Only a known speed moves the sector away from that of the Hall code.
-                let omega = free.iter().find(|&&index| self.names[index] == "omega");
-                index = *omega.unwrap_or(&index);
+                let speed = SPEEDS[self.random.usize(..2)];
+                let place = free.iter().find(|&&index| self.names[index] == speed);
+                index = *place.unwrap_or(&index);
                 Watched::Sector
             }
             7 => Watched::Corner { v_bus: self.v_bus },

@@ -213,7 +213,7 @@ fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     const TICKS: f64 = 50.0;
     let mut probe = program.clone();
     let mut values = probe.step.values();
-    let angle = values.find(|&value| probe.step.node(value).name == "step_angle");
+    let angle = values.find(|&value| probe.step.node(value).name == "step_angle_next");
     probe.step.outputs = vec![(
         Output::Probe("step_angle"),
         angle.expect("the rotor is followed"),
@@ -259,14 +259,12 @@ fn the_rotors_angle_per_period_is_limited_to_30_degrees() {
     for degrees in [3.0, 11.0, 20.0, 28.0, 29.5, 30.5, 33.0, 41.0, 52.0] {
         for turned in [degrees, -degrees] {
             let seen = angle_per_period(generated.graph.program(), turned);
-            // A turn is measured to a tick, of 600 or more at up to 30 degrees.
+            // A turn is measured to two ticks, of 600 or more at up to 30 degrees, and the change of half a
+            // turn's time, which counts 7/3 times, to three.
             let believed = f64::min(degrees, 30.0).copysign(turned);
-            let limit = if degrees < 30.0 {
-                degrees / 400.0
-            } else {
-                1e-6
-            };
+            let limit = degrees.powi(2) / 2000.0;
             assert!((seen - believed).abs() < limit, "{turned}: {seen}");
+            assert!(seen.abs() < 30.0 + 1e-6, "{turned}: {seen}");
         }
     }
 }

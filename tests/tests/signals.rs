@@ -37,6 +37,19 @@ struct Told {
     speeds: usize,
 }
 
+/// Radian per period at the mean speed of the last turn; only with a speed loop.
+fn mean_turn(model: &BitTrue, ticks: f64) -> Option<f64> {
+    let names = model.state_names();
+    let mut words = vec![0; names.len()];
+    model.state_words(&mut words);
+    let word = |name| {
+        let place = names.iter().position(|known| *known == name)?;
+        Some(f64::from(words[place]))
+    };
+    word("speed_integral")?;
+    Some(word("direction")? * word("omega")? * ticks * TAU / 32_f64.exp2())
+}
+
 /// Compares every controlled period of a drive.
 fn told<C: Control<Command = Legs>>() -> Told {
     let spec = Spec::from_toml(C::SPEC).expect("a specification");
@@ -101,7 +114,9 @@ fn told<C: Control<Command = Legs>>() -> Told {
         }
         told.emfs += usize::from(emf.is_some());
         if let Some(speed) = speed {
-            near(speed, trace.step_angle * rpm);
+            // A speed loop tells the speed that it controls, the mean of the last turn.
+            let turn = mean_turn(&model, spec.inverter.ticks);
+            near(speed, turn.unwrap_or(trace.step_angle) * rpm);
             told.speeds += usize::from(trace.step_angle != 0.0);
         }
     }

@@ -76,6 +76,8 @@ pub struct RotorWords<'b> {
     intervals: [Memory<'b>; 6],
     rev: Memory<'b>,
     omega: Memory<'b>,
+    ahead: Option<Memory<'b>>,
+    step_angle: Memory<'b>,
     over_speed: Option<OverSpeedWatch<'b>>,
 }
 
@@ -90,7 +92,7 @@ pub struct Rotor<'b> {
     pub step_angle: Expr<'b>,
     /// The speed is known and the angle interpolated.
     pub tracking: Flag<'b>,
-    /// Electrical angle per tick; 0 while the speed is unknown.
+    /// Electrical angle per tick, mean of the last turn; 0 while the speed is unknown.
     pub omega: Expr<'b>,
 }
 
@@ -110,6 +112,9 @@ struct Edges<'b> {
     /// Ticks of a turn.
     rev: Expr<'b>,
     omega: Expr<'b>,
+    /// This sector's speed over `omega`, where it is told.
+    ahead: Option<Expr<'b>>,
+    step_angle: Expr<'b>,
     /// Ticks since the last edge.
     age: Expr<'b>,
 }
@@ -198,12 +203,65 @@ fn turn<'b>(l: &Lowering<'b>, [first, others @ ..]: [Expr<'b>; 6]) -> Expr<'b> {
     }
 }
 
+/// Whether the intervals tell the speed's rise: between opposite edges, which are a sensor's own, the rotor
+/// turns by half a turn wherever the sensor stands. At samples the intervals are too coarse.
+fn tells_rise(spec: &Spec) -> bool {
+    let angles = spec.motor.hall_angles;
+    let opposite = |k: usize| (angles[k + 3] - angles[k] - 180.0).abs() < 1e-6;
+    matches!(spec.inverter.hall_capture, HallCapture::Timer { .. }) && (0..3).all(opposite)
+}
+
+/// The speed in the middle of the coming sector over that in the middle of the last turn, less 1, over the
+/// change of half a turn's time relative to a turn's, at constant acceleration: 4 (1/2 + 1/12).
+const RISE: f64 = 7.0 / 3.0;
+/// The change of half a turn's time is limited to 2^-3 of a turn's.
+const CHANGE_BITS: u32 = 3;
+/// Fraction bits of the coming sector's speed over the last turn's.
+const AHEAD_BITS: u32 = 30;
+const ONE: i32 = 1 << AHEAD_BITS;
+
+/// The speed of the coming sector over that of the last turn, by the change of half a turn's time; added to the
+/// open stage.
+fn speed_ahead<'b>(
+    l: &Lowering<'b>,
+    intervals: [Expr<'b>; 6],
+    [rev, rate]: [Expr<'b>; 2],
+) -> Expr<'b> {
+    let [last, middle, first, third, second, oldest] = intervals;
+    // The least shift with which the product of all changes and all rates fits a word.
+    let turn = f64::from(l.spec.age_max()) * 6.0;
+    let greatest = turn * (32_f64.exp2() / f64::from(l.spec.rev_min()));
+    let shift = (greatest.log2().floor() as u32 + 1).saturating_sub(31);
+    let limit = 1 << (32 - shift);
+    let bits = f64::from(shift) - f64::from(CHANGE_BITS + 32 - AHEAD_BITS);
+    let factor = RISE * bits.exp2();
+    let k_rise = l.coefficient(
+        "k_rise",
+        factor,
+        32,
+        "Rise of the speed to the coming sector, over the change of half a turn's time over a turn's.",
+        &format!("7/3 2^{bits} = {}", significant(factor)),
+    );
+    named! {
+        let shortened = (third + second + oldest) - (last + middle + first);
+        let eighths = (shortened << CHANGE_BITS).within(rev);
+        let change = eighths.mul_floor(rate, shift).clamp(-limit, limit);
+        let ahead_seen = k_rise * change + ONE;
+    }
+    ahead_seen
+}
+
 impl<'b> RotorWords<'b> {
     /// Declares the rotor tracker's state words.
     pub fn new(l: &Lowering<'b>) -> Self {
         let age_max = i64::from(l.spec.age_max());
         let rest = PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest;
         let omega_max = ((1 << 32) - 1) / i64::from(l.spec.rev_min());
+        let one = i64::from(ONE);
+        let rise_max = (RISE * f64::from(ONE >> CHANGE_BITS)).ceil() as i64;
+        let fastest = omega_max as f64 * l.spec.inverter.hall_capture.ticks_per_period();
+        let risen = 1.0 + rise_max as f64 / f64::from(ONE);
+        let turn_max = (SIXTH / 2).min((fastest * risen).ceil() as i64);
         let word = |name, initial, low, high, doc| {
             l.b.memory(name, initial, Interval::new(low, high), doc)
         };
@@ -233,7 +291,18 @@ impl<'b> RotorWords<'b> {
                 0,
                 0,
                 omega_max,
-                "Electrical angle per tick, 2^32 a turn; 0 while unknown.",
+                "Electrical angle per tick, mean of the last turn, 2^32 a turn; 0 while unknown.",
+            ),
+            ahead: tells_rise(l.spec).then(|| {
+                let doc = "Speed of this sector over the mean of the last turn, 2^30 for 1.";
+                word("ahead", ONE, one - rise_max, one + rise_max, doc)
+            }),
+            step_angle: word(
+                "step_angle",
+                0,
+                -turn_max,
+                turn_max,
+                "Electrical angle per control period, 2^32 a turn; 0 while unknown.",
             ),
             over_speed: OverSpeedWatch::new(l),
         }
@@ -250,7 +319,15 @@ impl<'b> RotorWords<'b> {
         l.format("omega", 32, 32, Rounding::Floor, meaning);
         let ages = self.time_since_edge(l, hall, hall_ticks);
         let edges = self.measure_speed(l, hall, ages);
-        self.interpolate(l, hall, &edges)
+        let turning = self.keep_or_lose(l, &edges);
+        let theta = interpolate(l, hall, &edges, &turning);
+        Rotor {
+            direction: edges.direction,
+            theta,
+            step_angle: turning.step_angle,
+            tracking: turning.tracking,
+            omega: turning.omega,
+        }
     }
 
     /// Time since the last edge: counted in software, and of this sample.
@@ -284,6 +361,7 @@ impl<'b> RotorWords<'b> {
     ) -> Edges<'b> {
         let old = self.direction.read();
         let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
+        let (step_angle, ahead) = (self.step_angle.read(), self.ahead.map(Memory::read));
         let intervals = self.intervals.map(Memory::read);
         l.b.guarded_stage(
             "measure_speed",
@@ -313,16 +391,29 @@ impl<'b> RotorWords<'b> {
         let over = (self.over_speed).map(|watch| watch.seen(l, edges_counted.is(2), rev_seen));
         let doc = "Ticks of an electrical turn at the greatest speed.";
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
-        let rate = rev_seen.max(least).turn_over();
+        let rate = rev_seen.max(least).turn_over().named("rate");
+        let turn = turn_of_period(l, rate);
+        let ahead = ahead.map(|old| (speed_ahead(l, seen, [rev_seen, rate]), old));
+        let turn = match ahead {
+            Some((ahead, _)) => turn.mul_floor(ahead, AHEAD_BITS).min(turn_max(l)),
+            None => turn,
+        };
         named! {
-            let omega_seen = edges_counted.is(2).choose(rate, 0);
+            let known = edges_counted.is(2);
+            let omega_seen = known.choose(rate, 0);
+            let step_angle_seen = known.choose(to_next.sign(turn.named("turn")), 0);
         }
-        let [direction, counted, rev, omega] = l.b.join([
+        let [direction, counted, rev, omega, step_angle] = l.b.join([
             ("direction_next", turned.direction, old),
             ("edges_now", edges_counted, edges),
             ("rev_next", rev_seen, rev),
             ("omega_now", omega_seen, omega),
+            ("step_angle_now", step_angle_seen, step_angle),
         ]);
+        let ahead = ahead.map(|(seen, old)| l.b.join([("ahead_now", seen, old)])[0]);
+        if let Some((word, ahead)) = self.ahead.zip(ahead) {
+            word.set(ahead);
+        }
         self.direction.set(direction);
         self.age_prev.set(age);
         self.rev.set(rev);
@@ -333,6 +424,8 @@ impl<'b> RotorWords<'b> {
             counted,
             rev,
             omega,
+            ahead,
+            step_angle,
             age,
         }
     }
@@ -353,49 +446,77 @@ impl<'b> RotorWords<'b> {
         }
     }
 
-    fn interpolate(&self, l: &Lowering<'b>, hall: &Hall<'b>, seen: &Edges<'b>) -> Rotor<'b> {
-        let age_max = i64::from(l.spec.age_max());
+    /// The speed unless an edge is missing.
+    fn keep_or_lose(&self, l: &Lowering<'b>, seen: &Edges<'b>) -> Turning<'b> {
         l.b.stage(
-            "interpolate_angle",
+            "lose_speed",
             &[
-                "Electrical angle between Hall edges: the sector's edge plus speed times age, at most one sector.",
-                "",
                 "A missing edge (after two mean intervals, or at the least speed) sets the angle to the sector's centre and",
                 "the speed to zero until two edges have been seen again.",
             ],
         );
+        let age_max = i64::from(l.spec.age_max());
         let late = (3 * seen.age).is_above(seen.rev);
         named! {
             let speed_known = seen.counted.is(2);
             let lost = seen.age.is_above(greatest_age(l, age_max)) | (speed_known & late);
             let edges_next = lost.choose(0, seen.counted);
             let omega_next = lost.choose(0, seen.omega);
+            let step_angle_next = lost.choose(0, seen.step_angle);
             let tracking = edges_next.is(2);
-            let forward = seen.direction.is_above(0);
-            let last = last_of_sector(l, hall.sector);
-            let progress = omega_next.mul_limited(seen.age, last);
         }
         self.edges.set(edges_next);
         self.omega.set(omega_next);
-        let inside = forward.choose(progress, last - progress);
-        let inside = tracking.choose(inside, centre_of_sector(l, last));
-        let doc = "Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned();
-        let exact = (Exact::Within(1), None);
-        let starts = sector_starts(l.spec.motor.hall_angles);
-        let starts = l.b.rounded_table("sector_start", starts, exact, &[doc]);
-        named! {
-            let theta = starts.at(hall.sector).angle_add(inside);
-            let turn = turn_of_period(l, omega_next);
-            let step_angle = forward.sign(turn);
-        }
-        Rotor {
-            direction: seen.direction,
-            theta,
-            step_angle,
-            tracking,
+        self.step_angle.set(step_angle_next);
+        Turning {
             omega: omega_next,
+            step_angle: step_angle_next,
+            tracking,
         }
     }
+}
+
+/// The speed of this period.
+struct Turning<'b> {
+    omega: Expr<'b>,
+    step_angle: Expr<'b>,
+    tracking: Flag<'b>,
+}
+
+/// The angle between edges.
+fn interpolate<'b>(
+    l: &Lowering<'b>,
+    hall: &Hall<'b>,
+    seen: &Edges<'b>,
+    turning: &Turning<'b>,
+) -> Expr<'b> {
+    l.b.stage(
+        "interpolate_angle",
+        &[
+            "Electrical angle between Hall edges: the sector's edge plus speed times age, at most one sector.",
+            "With an edge timer the speed is that of this sector at the last turn's acceleration.",
+        ],
+    );
+    named! {
+        let forward = seen.direction.is_above(0);
+        let last = last_of_sector(l, hall.sector);
+    }
+    let progress = turning.omega.mul_limited(seen.age, last);
+    let progress = match seen.ahead {
+        Some(ahead) => progress.mul_floor(ahead, AHEAD_BITS).min(last),
+        None => progress,
+    };
+    let progress = progress.named("progress");
+    let inside = forward.choose(progress, last - progress);
+    let inside = turning.tracking.choose(inside, centre_of_sector(l, last));
+    let doc = "Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned();
+    let exact = (Exact::Within(1), None);
+    let starts = sector_starts(l.spec.motor.hall_angles);
+    let starts = l.b.rounded_table("sector_start", starts, exact, &[doc]);
+    named! {
+        let theta = starts.at(hall.sector).angle_add(inside);
+    }
+    theta
 }
 
 /// Ticks since the last edge: counted, or measured by a timer.
@@ -468,12 +589,8 @@ fn sector_starts(degrees: [f64; 6]) -> Vec<i32> {
 /// The rotor's angle per control period at this speed.
 fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>) -> Expr<'b> {
     let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
-    let limit = || {
-        let doc = "Largest plausible angle per period: 30 degrees.";
-        l.rounded_number("turn_max", SIXTH / 2, sixth_turn(0.5), doc)
-    };
     if ticks.are_whole() {
-        return omega.mul_limited(ticks.number(l), limit());
+        return omega.mul_limited(ticks.number(l), turn_max(l));
     }
     let k_ticks = l.coefficient(
         "k_ticks",
@@ -482,7 +599,12 @@ fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>) -> Expr<'b> {
         "Ticks per control period, fraction included.",
         &format!("clock Ts = {}", significant(ticks.exact)),
     );
-    (k_ticks * omega).min(limit())
+    (k_ticks * omega).min(turn_max(l))
+}
+
+fn turn_max<'b>(l: &Lowering<'b>) -> Expr<'b> {
+    let doc = "Largest plausible angle per period: 30 degrees.";
+    l.rounded_number("turn_max", SIXTH / 2, sixth_turn(0.5), doc)
 }
 
 /// The sector in force `advance` periods ahead (semantics, end of step 4).

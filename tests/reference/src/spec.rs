@@ -72,6 +72,12 @@ impl Motor {
         })
     }
 
+    /// Whether each edge lies half a turn from the third one after it, as those of one sensor do.
+    pub fn edges_are_opposite(&self) -> bool {
+        let begins = self.hall_angles.unwrap_or(EVEN_EDGES);
+        (0..3).all(|k| (begins[k + 3] - begins[k] - 180.0).abs() < 1e-6)
+    }
+
     /// Width of the widest sector, radian.
     pub fn widest_sector(&self) -> f64 {
         let widths = self.sectors_beyond_places().map(|[_, width]| width);

@@ -390,7 +390,7 @@ impl<W: Word> BitTrue<W> {
                 .timing
                 .step(&self.clock, &event, direction_before, input(sample.ticks()));
             angle = rotor::angle(&self.clock, k, &self.state, &event);
-            self.state.omega = angle.omega;
+            self.state.speed = angle.speed;
         }
         let sector_eff = angle.sector_eff;
 
@@ -409,7 +409,7 @@ impl<W: Word> BitTrue<W> {
         let mut speed_integral = self.state.speed_integral;
         let mut speed_in_force = self.state.speed_in_force;
         if let Some(speed) = &self.speed {
-            let turning = direction * self.state.omega;
+            let turning = direction * angle.speed.omega;
             let mut wanted = self.speed_ref;
             if let Some(ramp) = &self.ramp {
                 (wanted, speed_in_force) = ramp.follow(wanted, turning, &self.state);
@@ -428,7 +428,7 @@ impl<W: Word> BitTrue<W> {
         let delayed = self.variant.delayed();
         let shape = if self.variant.shaped() {
             let ahead = if delayed { 2.0 } else { 1.0 };
-            k.shape.both(angle.theta + angle.step * ahead)
+            k.shape.both(angle.theta + angle.speed.step * ahead)
         } else {
             [word(0.0); 2]
         };
@@ -457,12 +457,12 @@ impl<W: Word> BitTrue<W> {
             Some(source @ (EmfSource::Model | EmfSource::Observer)) => {
                 let now = k.flux.both(angle.theta);
                 let start = if delayed {
-                    k.flux.both(angle.theta + angle.step)
+                    k.flux.both(angle.theta + angle.speed.step)
                 } else {
                     now
                 };
                 let ahead = if delayed { 2.0 } else { 1.0 };
-                let end = k.flux.both(angle.theta + angle.step * ahead);
+                let end = k.flux.both(angle.theta + angle.speed.step * ahead);
                 let mean = |from: [W; 2], to: [W; 2]| {
                     both(|x| {
                         within(
@@ -478,7 +478,7 @@ impl<W: Word> BitTrue<W> {
                     let residual = emf::residual(k, &self.state, i);
                     emf_error = emf::corrected_error(k, &self.state, residual, shape);
                     if let Some(watch) = &self.residual {
-                        let demand = (j, angle.step);
+                        let demand = (j, angle.speed.step);
                         residual_count = watch.count(&self.state, residual, emf_error, demand);
                     }
                     let e = emf::corrected(k, mean(start, end), emf_error, shape);
@@ -578,7 +578,7 @@ impl<W: Word> BitTrue<W> {
             u_unsat: decision.u_unsat,
             u: decision.u,
             theta: angle.theta,
-            step_angle: angle.step,
+            step_angle: angle.speed.step,
             sector_eff,
             commutating: run && commutating,
             reach: decision.reach,

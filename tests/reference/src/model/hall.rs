@@ -20,7 +20,14 @@ pub struct HallClock {
     pub rev_min: f64,
     /// Of a turn at the over-speed; 0 where the speed is not watched.
     pub over_speed_turn: f64,
+    /// Whether the intervals tell the speed's rise.
+    pub tells_rise: bool,
 }
+
+/// 4 (1/2 + 1/12): from the middle of a turn to the middle of the sector behind it.
+pub const RISE: f64 = 7.0 / 3.0;
+/// Limit of the change of half a turn's time, relative to a turn's.
+pub const GREATEST_CHANGE: f64 = 0.125;
 
 impl HallClock {
     pub fn new(spec: &Spec) -> Self {
@@ -40,6 +47,7 @@ impl HallClock {
             age_max: f64::from(age_max),
             rev_min: f64::from(rev_min),
             over_speed_turn: f64::from(over_speed_turn.unwrap_or(0)),
+            tells_rise: hall_capture == HallCapture::Timer && spec.motor.edges_are_opposite(),
         }
     }
 }
@@ -94,6 +102,13 @@ impl<W: Word> HallTiming<W> {
     #[inline]
     pub fn ramp_known(&self) -> f64 {
         if self.edges == 2 { 2.0 } else { 1.0 }
+    }
+
+    /// By how many ticks the last half turn was shorter than the one before.
+    #[inline]
+    pub fn shortened(&self) -> W {
+        let [last, middle, first, third, second, oldest] = self.intervals;
+        (third + second + oldest) - (last + middle + first)
     }
 
     /// Whether the rotor turns too fast.

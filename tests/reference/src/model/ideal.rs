@@ -9,7 +9,7 @@ mod limit;
 mod speed;
 mod vector;
 
-use super::hall::HallClock;
+use super::hall::{GREATEST_CHANGE, HallClock, RISE};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Trace};
@@ -609,6 +609,16 @@ impl Ideal {
         }
     }
 
+    /// Speed of this sector over the mean of the last turn.
+    fn ahead(&self) -> f64 {
+        if !self.clock.tells_rise {
+            return 1.0;
+        }
+        let timing = &self.state.timing;
+        let change = timing.shortened() / timing.rev.max(self.clock.rev_min);
+        1.0 + RISE * change.clamp(-GREATEST_CHANGE, GREATEST_CHANGE)
+    }
+
     /// Angle at the sample and angle per period (radians), and the sector with its advance.
     fn angle(&self, sector: usize) -> (f64, f64, usize) {
         let timing = &self.state.timing;
@@ -619,8 +629,10 @@ impl Ideal {
             _ => self.sectors[sector - 1],
         };
         let end = width * (1.0 - 1e-9);
-        let progress = (omega * timing.age_prev).min(end);
-        let step_angle = timing.direction * (omega * self.clock.period).min(FRAC_PI_6);
+        let ahead = self.ahead();
+        let progress = ((omega * timing.age_prev).min(end) * ahead).min(end);
+        let turn = (omega * self.clock.period).min(FRAC_PI_6) * ahead;
+        let step_angle = timing.direction * turn.min(FRAC_PI_6);
         let in_sector = if timing.edges != 2 {
             width / 2.0
         } else if timing.direction > 0.0 {

@@ -1,10 +1,12 @@
 //! Coefficients and constants, rounded from the specification (section "Words").
 
 use super::parts::{Part, Parts};
+use super::rotor::Rise;
 use super::sectors::Sectors;
 use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
+use crate::model::hall::HallClock;
 use crate::model::variant::{Variant, emf_error_limit, reference_gain};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Saturation, Spec, Switch,
@@ -70,6 +72,8 @@ pub struct Constants<W> {
     pub k_advance: Coefficient<W>,
     /// Ticks per period, if not an integer.
     pub k_ticks: Option<Coefficient<W>>,
+    /// Where the intervals tell how the speed rises.
+    pub rise: Option<Rise<W>>,
     pub ratio_bits: u32,
     pub scale_bits: u32,
     pub emf_product: Shift,
@@ -225,6 +229,7 @@ impl<W: Word> Constants<W> {
         let end = commutation.unwrap_or_default();
         let (estimated, filtered) = (variant.estimated(), variant.filtered());
         let advanced = rotor && options.advance > 0.0;
+        let clock = HallClock::new(spec);
         let gain = reference_gain(spec);
         let bus = match inverter.bus_sense()? {
             None => None,
@@ -287,6 +292,7 @@ impl<W: Word> Constants<W> {
                 (Part::Edges, rotor || commutation.is_some() || fades),
                 (Part::Direction, rotor || commutation.is_some() || fades),
                 (Part::Rotor, rotor),
+                (Part::Ahead, rotor && clock.tells_rise),
                 (Part::OverSpeed, inverter.over_speed_turn.is_some()),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Ramp, variant.options.acceleration_limit > 0.0),
@@ -360,6 +366,11 @@ impl<W: Word> Constants<W> {
             k_advance: scale.only_if(advanced, "k_advance", options.advance)?,
             k_ticks: if rotor && inverter.ticks.fract() != 0.0 {
                 Some(scale.coefficient("k_ticks", inverter.ticks)?)
+            } else {
+                None
+            },
+            rise: if rotor && clock.tells_rise {
+                Some(Rise::new(scale, &clock)?)
             } else {
                 None
             },

@@ -6,6 +6,7 @@ pub enum Part {
     Edges,
     Direction,
     Rotor,
+    Ahead,
     OverSpeed,
     Speed,
     Ramp,

@@ -1,23 +1,80 @@
 //! The rotor's angle from the timing of the Hall edges (section 4).
 
-use super::constants::Constants;
+use super::constants::{Constants, Scale};
 use super::sectors::{HALF_SIXTH, TWELFTH};
 use super::state::State;
-use crate::exact::{Word, floor, greater, lesser, pow2, to_index, word, wrap32};
-use crate::model::hall::HallClock;
+use crate::Error;
+use crate::exact::{
+    Coefficient, Shift, Word, floor, greater, lesser, pow2, to_index, within, word, wrap32,
+};
+use crate::model::hall::{HallClock, HallTiming, RISE};
 use crate::model::sector::HallEvent;
+
+/// The rotor's speed, as it was seen at the last edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Speed<W> {
+    /// Angle per tick, mean of the last turn.
+    pub omega: W,
+    /// This sector's speed over it, 2^30 for 1.
+    pub ahead: W,
+    /// Angle per period, signed.
+    pub step: W,
+}
+
+impl<W: Word> Default for Speed<W> {
+    fn default() -> Self {
+        Self {
+            omega: word(0.0),
+            ahead: word(pow2(30)),
+            step: word(0.0),
+        }
+    }
+}
 
 /// The rotor at this sample.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Angle<W> {
+pub struct Angle<W: Word> {
     /// Angle word, 0 to 2^32 - 1.
     pub theta: W,
-    /// Angle per period, signed.
-    pub step: W,
-    /// Angle per tick.
-    pub omega: W,
+    pub speed: Speed<W>,
     /// Sector with its advance.
     pub sector_eff: usize,
+}
+
+/// The speed of the coming sector over that of the last turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Rise<W> {
+    /// Of eight times the change of half a turn's time, with S bits less.
+    change: Shift,
+    limit: f64,
+    factor: Coefficient<W>,
+    whole: Shift,
+}
+
+impl<W: Word> Rise<W> {
+    pub fn new(scale: &Scale, clock: &HallClock) -> Result<Self, Error> {
+        let greatest = 6.0 * clock.age_max * (pow2(32) / clock.rev_min);
+        let shift = (greatest.log2().floor() - 30.0).max(0.0);
+        Ok(Self {
+            change: Shift::new(shift as u32),
+            limit: pow2(32 - shift as i32),
+            factor: scale.coefficient("k_rise", RISE * pow2(shift as i32 - 5))?,
+            whole: Shift::new(30),
+        })
+    }
+
+    /// An angle at the last turn's speed, at the coming sector's.
+    #[inline]
+    fn risen(&self, angle: W, ahead: W, most: W) -> W {
+        lesser(self.whole.floor_product(angle, ahead), most)
+    }
+
+    #[inline]
+    fn ahead(&self, timing: &HallTiming<W>, rate: W) -> W {
+        let eighths = within(timing.shortened() * 8.0, -timing.rev, timing.rev);
+        let change = self.change.floor_product(eighths, rate);
+        self.factor.mul(within(change, -self.limit, self.limit)) + pow2(30)
+    }
 }
 
 /// The angle after `state.timing` has followed the sample.
@@ -30,21 +87,30 @@ pub fn angle<W: Word>(
 ) -> Angle<W> {
     let timing = &state.timing;
     let turning = timing.edges == 2;
-    let omega = if !turning {
-        word(0.0)
-    } else if event.edge {
-        floor(word::<W>(pow2(32) - 1.0) / greater(timing.rev, clock.rev_min))
-    } else {
-        state.omega
-    };
+    let mut speed = state.speed;
+    if !turning {
+        (speed.omega, speed.step) = (word(0.0), word(0.0));
+    }
+    if event.edge {
+        let rate = floor(word::<W>(pow2(32) - 1.0) / greater(timing.rev, clock.rev_min));
+        let turn = match k.k_ticks {
+            None => rate * clock.ticks,
+            Some(k_ticks) => k_ticks.mul(rate),
+        };
+        let mut turn = lesser(turn, HALF_SIXTH);
+        if let Some(rise) = &k.rise {
+            speed.ahead = rise.ahead(timing, rate);
+            turn = rise.risen(turn, speed.ahead, word(HALF_SIXTH));
+        }
+        if turning {
+            (speed.omega, speed.step) = (rate, timing.direction * turn);
+        }
+    }
     let (start, last) = (k.sectors.start[event.sector], k.sectors.last[event.sector]);
-    let progress = lesser(omega * timing.age_prev, last);
-    let turn = match k.k_ticks {
-        None => omega * clock.ticks,
-        Some(k_ticks) => k_ticks.mul(omega),
-    };
-    let turn = lesser(turn, HALF_SIXTH);
-    let step = timing.direction * turn;
+    let mut progress = lesser(speed.omega * timing.age_prev, last);
+    if let Some(rise) = &k.rise {
+        progress = rise.risen(progress, speed.ahead, word(last));
+    }
     let in_sector = if !turning {
         word(k.sectors.half[event.sector])
     } else if timing.direction > 0.0 {
@@ -54,15 +120,14 @@ pub fn angle<W: Word>(
     };
     let theta = wrap32(in_sector + start);
     let sector_eff = if k.advanced && turning {
-        let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
+        let ahead = wrap32(theta + k.k_advance.mul(speed.step) + TWELFTH);
         to_index(floor(ahead * 6.0 * pow2(-32))) + 1
     } else {
         event.sector
     };
     Angle {
         theta,
-        step,
-        omega,
+        speed,
         sector_eff,
     }
 }

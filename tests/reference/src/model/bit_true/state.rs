@@ -2,6 +2,7 @@
 
 use super::constants::Constants;
 use super::parts::{Part, Parts};
+use super::rotor::Speed;
 use crate::exact::{Word, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
@@ -18,7 +19,7 @@ pub struct State<W: Word> {
     pub offset: [W; 3],
     pub sector_prev: usize,
     pub timing: HallTiming<W>,
-    pub omega: W,
+    pub speed: Speed<W>,
     pub speed_integral: W,
     pub speed_in_force: W,
     /// 1 once controlled, 2 once the speed is known.
@@ -203,7 +204,11 @@ macro_rules! for_each_word {
             $show!("t5", $state.timing.intervals[4]);
             $show!("t6", $state.timing.intervals[5]);
             $show!("rev", $state.timing.rev);
-            $show!("omega", $state.omega);
+            $show!("omega", $state.speed.omega);
+            if $parts.has(Part::Ahead) {
+                $show!("ahead", $state.speed.ahead);
+            }
+            $show!("step_angle", $state.speed.step);
         }
         if $parts.has(Part::OverSpeed) {
             $show!("over_speed_count", $state.timing.too_fast);
