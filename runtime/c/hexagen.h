@@ -350,10 +350,10 @@ static inline int32_t hexagen_angle_index(int32_t angle, uint32_t segments)
     return (int32_t)(((uint64_t)(uint32_t)angle * segments) >> 32);
 }
 
-/** Position within that part; its width is 2^31. */
+/** Position within that part from its middle; its width is 2^32. */
 static inline int32_t hexagen_angle_fraction(int32_t angle, uint32_t segments)
 {
-    return (int32_t)((uint32_t)((uint32_t)angle * segments) >> 1);
+    return hexagen_wrap(((uint32_t)angle * segments) ^ UINT32_C(0x80000000));
 }
 
 /** Thousandths as a number with 16 fraction bits, rounded to the nearest; saturates. */

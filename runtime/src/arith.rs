@@ -165,11 +165,11 @@ pub fn angle_index(angle: Word, segments: u32) -> Word {
     Word(((angle.0 as u32 as u64).wrapping_mul(segments as u64) >> 32) as i32)
 }
 
-/// Position within that part; its width is 2^31. `segments` is 1 to 65536.
+/// Position within that part from its middle; its width is 2^32. `segments` is 1 to 65536.
 #[inline(always)]
 #[must_use]
 pub fn angle_fraction(angle: Word, segments: u32) -> Word {
-    Word(((angle.0 as u32).wrapping_mul(segments) >> 1) as i32)
+    Word(((angle.0 as u32).wrapping_mul(segments) ^ 1 << 31) as i32)
 }
 
 /// `table[index mod N]`; `N` is a power of two, so no index is out of bounds.

@@ -62,7 +62,7 @@ impl<'b> PeriodicTable<'b> {
         let coefficients = [0, 1, 2].map(|power| {
             let words = fit.coefficients.iter().map(|c| round_half_up(c[power] * scale) as i32);
             let lines = [
-                format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from 0 to 1."),
+                format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from -1/2 to 1/2."),
                 String::new(),
                 format!("{frac_bits} fraction bits; the parabolas are at most {error} off."),
             ];
@@ -96,8 +96,8 @@ impl<'b> PeriodicTable<'b> {
         let segment = segment.named(&format!("{name}_segment"));
         let t = angle.angle_fraction(self.segments);
         let t = t.named(&format!("{name}_t"));
-        let slope = c1.at(segment) + c2.at(segment).mul_round(t, 31);
-        (c0.at(segment) + slope.mul_round(t, 31)).named(name)
+        let slope = c1.at(segment) + t.mul_floor(c2.at(segment), 32);
+        (c0.at(segment) + t.mul_floor(slope, 32)).named(name)
     }
 }
 

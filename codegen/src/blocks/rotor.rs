@@ -220,6 +220,11 @@ const CHANGE_BITS: u32 = 3;
 const AHEAD_BITS: u32 = 30;
 const ONE: i32 = 1 << AHEAD_BITS;
 
+/// Limit of [`Edges::ahead`].
+fn greatest_ahead() -> f64 {
+    1.0 + RISE * (-f64::from(CHANGE_BITS)).exp2()
+}
+
 /// The speed of the coming sector over that of the last turn, by the change of half a turn's time; added to the
 /// open stage.
 fn speed_ahead<'b>(
@@ -258,10 +263,10 @@ impl<'b> RotorWords<'b> {
         let rest = PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest;
         let omega_max = ((1 << 32) - 1) / i64::from(l.spec.rev_min());
         let one = i64::from(ONE);
-        let rise_max = (RISE * f64::from(ONE >> CHANGE_BITS)).ceil() as i64;
-        let fastest = omega_max as f64 * l.spec.inverter.hall_capture.ticks_per_period();
-        let risen = 1.0 + rise_max as f64 / f64::from(ONE);
-        let turn_max = (SIXTH / 2).min((fastest * risen).ceil() as i64);
+        let tells_rise = tells_rise(l.spec);
+        let risen = if tells_rise { greatest_ahead() } else { 1.0 };
+        let turn_max = (SIXTH / 2).min(greatest_turn(l.spec, risen).ceil() as i64);
+        let rise_max = ((greatest_ahead() - 1.0) * f64::from(ONE)).ceil() as i64;
         let word = |name, initial, low, high, doc| {
             l.b.memory(name, initial, Interval::new(low, high), doc)
         };
@@ -293,7 +298,7 @@ impl<'b> RotorWords<'b> {
                 omega_max,
                 "Electrical angle per tick, mean of the last turn, 2^32 a turn; 0 while unknown.",
             ),
-            ahead: tells_rise(l.spec).then(|| {
+            ahead: tells_rise.then(|| {
                 let doc = "Speed of this sector over the mean of the last turn, 2^30 for 1.";
                 word("ahead", ONE, one - rise_max, one + rise_max, doc)
             }),
@@ -392,12 +397,8 @@ impl<'b> RotorWords<'b> {
         let doc = "Ticks of an electrical turn at the greatest speed.";
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over().named("rate");
-        let turn = turn_of_period(l, rate);
         let ahead = ahead.map(|old| (speed_ahead(l, seen, [rev_seen, rate]), old));
-        let turn = match ahead {
-            Some((ahead, _)) => turn.mul_floor(ahead, AHEAD_BITS).min(turn_max(l)),
-            None => turn,
-        };
+        let turn = turn_of_period(l, rate, ahead.map(|(ahead, _)| ahead));
         named! {
             let known = edges_counted.is(2);
             let omega_seen = known.choose(rate, 0);
@@ -586,25 +587,41 @@ fn sector_starts(degrees: [f64; 6]) -> Vec<i32> {
     std::iter::once(0).chain(degrees.map(start)).collect()
 }
 
-/// The rotor's angle per control period at this speed.
-fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>) -> Expr<'b> {
+/// The rotor's angle per control period at this speed; `ahead` as in [`Edges`].
+fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>, ahead: Option<Expr<'b>>) -> Expr<'b> {
     let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
-    if ticks.are_whole() {
-        return omega.mul_limited(ticks.number(l), turn_max(l));
-    }
-    let k_ticks = l.coefficient(
-        "k_ticks",
-        ticks.exact,
-        32,
-        "Ticks per control period, fraction included.",
-        &format!("clock Ts = {}", significant(ticks.exact)),
-    );
-    (k_ticks * omega).min(turn_max(l))
+    let turn = if ticks.are_whole() {
+        ticks.number(l) * omega
+    } else {
+        let k_ticks = l.coefficient(
+            "k_ticks",
+            ticks.exact,
+            32,
+            "Ticks per control period, fraction included.",
+            &format!("clock Ts = {}", significant(ticks.exact)),
+        );
+        k_ticks * omega
+    };
+    let turn = limited_turn(l, turn, 1.0);
+    let Some(ahead) = ahead else {
+        return turn;
+    };
+    limited_turn(l, turn.mul_floor(ahead, AHEAD_BITS), greatest_ahead())
 }
 
-fn turn_max<'b>(l: &Lowering<'b>) -> Expr<'b> {
+/// Greatest angle per period, of the greatest mean speed with a factor.
+fn greatest_turn(spec: &Spec, factor: f64) -> f64 {
+    let omega_max = (32_f64.exp2() - 1.0) / f64::from(spec.rev_min());
+    omega_max * spec.inverter.hall_capture.ticks_per_period() * factor
+}
+
+/// The angle, at most 30 degrees; `factor` is that of [`greatest_turn`], which may be less.
+fn limited_turn<'b>(l: &Lowering<'b>, turn: Expr<'b>, factor: f64) -> Expr<'b> {
+    if greatest_turn(l.spec, factor) < (SIXTH / 2) as f64 {
+        return turn;
+    }
     let doc = "Largest plausible angle per period: 30 degrees.";
-    l.rounded_number("turn_max", SIXTH / 2, sixth_turn(0.5), doc)
+    turn.min(l.rounded_number("turn_max", SIXTH / 2, sixth_turn(0.5), doc))
 }
 
 /// The sector in force `advance` periods ahead (semantics, end of step 4).

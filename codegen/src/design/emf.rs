@@ -36,7 +36,7 @@ pub fn proportional_currents(shape: EmfShape, ratio: f64, theta: f64) -> [f64; 3
 /// A periodic function as parabolas over equal segments of a turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parabolas {
-    /// Per segment the coefficients of 1, t, t^2 with t from 0 to 1 over the segment.
+    /// Per segment the coefficients of 1, t, t^2 with t from -1/2 to 1/2 over the segment.
     pub coefficients: Vec<[f64; 3]>,
     /// Largest distance from the function.
     pub error: f64,
@@ -62,16 +62,13 @@ impl Parabolas {
         let mut error = 0.0_f64;
         let coefficients = (0..segments)
             .map(|segment| {
-                let left = f64::from(segment) * width;
-                let [y0, y1, y2] = [0.0, 0.5, 1.0].map(|t| function(left + t * width));
-                let [c0, c1, c2] = [
-                    y0,
-                    -3.0 * y0 + 4.0 * y1 - y2,
-                    2.0 * y0 - 4.0 * y1 + 2.0 * y2,
-                ];
+                let middle = (f64::from(segment) + 0.5) * width;
+                let [y0, y1, y2] = [-0.5, 0.0, 0.5].map(|t| function(middle + t * width));
+                let [c0, c1, c2] = [y1, y2 - y0, 2.0 * (y0 + y2) - 4.0 * y1];
                 for probe in 0..=PROBES {
-                    let t = f64::from(probe) / f64::from(PROBES);
-                    error = error.max((c0 + t * (c1 + t * c2) - function(left + t * width)).abs());
+                    let t = f64::from(probe) / f64::from(PROBES) - 0.5;
+                    let fitted = c0 + t * (c1 + t * c2);
+                    error = error.max((fitted - function(middle + t * width)).abs());
                 }
                 [c0, c1, c2]
             })
@@ -87,7 +84,7 @@ impl Parabolas {
         let ends = self
             .coefficients
             .iter()
-            .flat_map(|[_, c1, c2]| [*c1, c1 + 2.0 * c2]);
+            .flat_map(|[_, c1, c2]| [c1 - c2, c1 + c2]);
         ends.fold(0.0, |most: f64, slope| most.max(slope.abs()))
     }
 

@@ -447,8 +447,6 @@ impl<'p> Bounds<'p> {
                 let slope = of(a).quotient(32, least * ideal);
                 slope.plus(ErrorInterval::new(-1.0 - 1.0 / least, 0.0))
             }
-            // Truncation of half a unit; the effect of the angle's error is counted at the lookup.
-            Op::AngleFraction { .. } => ErrorInterval::new(-0.5, 0.0),
             Op::Lookup { table, index, .. } => {
                 let table = &self.program.tables[table.index()];
                 let entry = match table.exact {
@@ -470,7 +468,9 @@ impl<'p> Bounds<'p> {
             Op::Join { taken, otherwise } => {
                 self.chosen(index, self.guard(index), [taken, otherwise])
             }
-            Op::Compare(..)
+            // The effect of the angle's error on its fraction is counted at the lookup.
+            Op::AngleFraction { .. }
+            | Op::Compare(..)
             | Op::Exceeds(..)
             | Op::And(..)
             | Op::Or(..)

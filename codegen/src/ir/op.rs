@@ -205,7 +205,7 @@ pub enum Op {
         /// Segments of a turn, 1 to 2^16.
         segments: u32,
     },
-    /// the top 31 bits of (u segments mod 2^32): position within the segment, 2^31 = its whole
+    /// (u segments mod 2^32) - 2^31: position within the segment from its middle, 2^32 = its whole
     /// width
     AngleFraction {
         /// Angle.
@@ -468,7 +468,7 @@ impl Op {
             Self::AngleSub(..) => wrap(x[0] - x[1]),
             Self::AngleIndex { segments, .. } => (unsigned(x[0]) * i64::from(segments)) >> 32,
             Self::AngleFraction { segments, .. } => {
-                unsigned(unsigned(x[0]) * i64::from(segments)) >> 1
+                unsigned(unsigned(x[0]) * i64::from(segments)) - (1 << 31)
             }
             Self::Lookup { table: id, .. } => table(id, x[0]),
             Self::Compare(how, ..) => i64::from(how.holds(x[0], x[1])),
@@ -556,9 +556,8 @@ impl Op {
                 }
                 Interval::new(((1 << 32) - 1) / x[0].high, ((1 << 32) - 1) / x[0].low)
             }
-            Self::AngleAdd(..) | Self::AngleSub(..) => Interval::WORD,
+            Self::AngleAdd(..) | Self::AngleSub(..) | Self::AngleFraction { .. } => Interval::WORD,
             Self::AngleIndex { segments, .. } => Interval::new(0, i64::from(segments) - 1),
-            Self::AngleFraction { .. } => Interval::new(0, i64::from(i32::MAX)),
             Self::Lookup { table: id, .. } => table(id),
             Self::Compare(..) | Self::Exceeds(..) | Self::And(..) | Self::Or(..) | Self::Not(_) => {
                 Interval::FLAG

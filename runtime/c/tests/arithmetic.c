@@ -160,7 +160,7 @@ int main(void)
             const uint32_t segments = 1U + bits() % 65536U;
             const wide turns = (wide)(uint32_t)w * segments;
             EXPECT(angle_index(w, segments), turns / TURN);
-            EXPECT(angle_fraction(w, segments), turns % TURN / 2);
+            EXPECT(angle_fraction(w, segments), turns % TURN - TURN / 2);
         }
     }
     printf("no difference\n");

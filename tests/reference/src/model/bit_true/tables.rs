@@ -11,7 +11,7 @@ const THIRD: f64 = 1_431_655_765.0;
 pub struct Table<W> {
     /// Segments per turn over 2^32.
     scale: f64,
-    mul31: Shift,
+    upper: Shift,
     segments: Vec<[W; 3]>,
 }
 
@@ -23,11 +23,7 @@ impl<W: Word> Table<W> {
         let coefficients = |index: u32| {
             let left = f64::from(index) * width;
             let (y0, y1, y2) = (y(left), y(left + width / 2.0), y(left + width));
-            [
-                raw(y0),
-                raw(4.0 * y1 - 3.0 * y0 - y2),
-                raw(2.0 * (y0 + y2) - 4.0 * y1),
-            ]
+            [raw(y1), raw(y2 - y0), raw(2.0 * (y0 + y2) - 4.0 * y1)]
         };
         let rows: Vec<[f64; 3]> = (0..segments).map(coefficients).collect();
         // Any row may be read.
@@ -41,7 +37,7 @@ impl<W: Word> Table<W> {
         };
         Self {
             scale: f64::from(segments) * pow2(-32),
-            mul31: Shift::new(31),
+            upper: Shift::new(32),
             segments: rows.iter().map(any).collect(),
         }
     }
@@ -56,11 +52,10 @@ impl<W: Word> Table<W> {
     #[inline]
     fn at(&self, theta: W) -> W {
         let (index, position) = split(theta * self.scale);
-        let t = floor(position * pow2(31));
+        let t = floor(position * pow2(32)) - pow2(31);
         let [c0, c1, c2] = self.segments[to_index(index)];
-        c0 + self
-            .mul31
-            .round_product(t, c1 + self.mul31.round_product(t, c2))
+        let slope = c1 + self.upper.floor_product(t, c2);
+        c0 + self.upper.floor_product(t, slope)
     }
 }
 
