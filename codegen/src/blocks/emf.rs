@@ -27,7 +27,7 @@ struct PeriodicTable<'b> {
 struct FluxModel<'b> {
     table: PeriodicTable<'b>,
     frac_bits: u32,
-    /// Largest plausible EMF, words of voltage.
+    /// Largest plausible EMF, words of voltage: a power of two.
     limit: i64,
 }
 
@@ -59,7 +59,8 @@ impl<'b> PeriodicTable<'b> {
     ) -> Self {
         let scale = f64::from(frac_bits).exp2();
         let segments = fit.coefficients.len() as u32;
-        let coefficients = [0, 1, 2].map(|power| {
+        // The constant coefficient, which is needed last, stands last.
+        let coefficients = [2, 1, 0].map(|power| {
             let words = fit.coefficients.iter().map(|c| round_half_up(c[power] * scale) as i32);
             let lines = [
                 format!("{doc}: coefficient of t^{power} in each of {segments} segments of a turn, t from -1/2 to 1/2."),
@@ -91,7 +92,7 @@ impl<'b> PeriodicTable<'b> {
 
     /// The function's value at an angle: c0 + t (c1 + t c2).
     fn at(&self, name: &str, angle: Expr<'b>) -> Expr<'b> {
-        let [c0, c1, c2] = self.coefficients;
+        let [c2, c1, c0] = self.coefficients;
         let segment = angle.angle_index(self.segments);
         let segment = segment.named(&format!("{name}_segment"));
         let t = angle.angle_fraction(self.segments);
@@ -162,13 +163,15 @@ impl<'b> FluxModel<'b> {
 
     /// The mean EMF between two flux linkages.
     fn emf(&self, l: &Lowering<'b>, start: Phases<'b>, end: Phases<'b>) -> Phases<'b> {
-        let doc = "Largest plausible EMF, one and a half times that of the greatest speed";
+        let doc = "Largest plausible EMF: one and a half times that of the greatest speed, up to the next power of two of timer counts";
         let change = end - start;
         let volts = match self.frac_bits.checked_sub(l.scale.voltage_bits) {
             None | Some(0) => change,
             Some(shift) => change >> shift,
         };
-        volts.map(|volts| volts.within(l.voltage("e_max", self.limit, doc)))
+        let low = || l.voltage("e_model_min", -self.limit, doc);
+        let high = || l.voltage("e_model_max", self.limit - 1, doc);
+        volts.map(|volts| volts.clamp(low(), high()))
     }
 
     /// Flux linkage at the start of the target period, and the mean EMF over it.
@@ -256,11 +259,24 @@ pub fn proportional_shape<'b>(l: &Lowering<'b>, rotor: &Rotor<'b>, delay: u32) -
     Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)])
 }
 
+/// The words with as many zero bits behind them, at most 32 less those of a shape, as still fit, and the shift that takes
+/// both away: with all of them a product with a shape is an upper word. The words have these names.
+pub fn lifted<'b, const N: usize>(words: [(&str, Expr<'b>); N]) -> ([Expr<'b>; N], u32) {
+    let spare = words.map(|(_, word)| 32 - word.interval().bits());
+    let bits = spare.into_iter().fold(32 - SHAPE_BITS, u32::min);
+    let lifted = words.map(|(name, word)| match bits {
+        0 => word,
+        _ => (word << bits).named(name),
+    });
+    (lifted, SHAPE_BITS + bits)
+}
+
 /// Reference along [`proportional_shape`], as voltage words of phases a and b; added to the open
 /// stage.
 pub fn proportional_reference<'b>(shape: Phases<'b>, set_point: Expr<'b>) -> Phases<'b> {
+    let ([lifted], shift) = lifted([("j_lifted", set_point)]);
     named! {
-        let j = shape.map(|shape| set_point.mul_round(shape, SHAPE_BITS));
+        let j = shape.map(|shape| lifted.mul_floor(shape, shift));
     }
     j
 }

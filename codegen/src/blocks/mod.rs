@@ -23,7 +23,7 @@ pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;
 pub use commutation::{Commutation, CommutationRule};
 pub use emf::{
-    Corner, ModelledEmf, SHAPE_BITS, model_emf, model_target_emf, proportional_reference,
+    Corner, ModelledEmf, SHAPE_BITS, lifted, model_emf, model_target_emf, proportional_reference,
     proportional_shape, quasi_square_reference,
 };
 pub use fade::{Allowed, BusFade};

@@ -76,7 +76,7 @@ pub struct RotorWords<'b> {
     intervals: [Memory<'b>; 6],
     rev: Memory<'b>,
     omega: Memory<'b>,
-    ahead: Option<Memory<'b>>,
+    rise: Option<Memory<'b>>,
     step_angle: Memory<'b>,
     over_speed: Option<OverSpeedWatch<'b>>,
 }
@@ -112,8 +112,8 @@ struct Edges<'b> {
     /// Ticks of a turn.
     rev: Expr<'b>,
     omega: Expr<'b>,
-    /// This sector's speed over `omega`, where it is told.
-    ahead: Option<Expr<'b>>,
+    /// This sector's speed over `omega` less 1, where it is told.
+    rise: Option<Expr<'b>>,
     step_angle: Expr<'b>,
     /// Ticks since the last edge.
     age: Expr<'b>,
@@ -216,18 +216,12 @@ fn tells_rise(spec: &Spec) -> bool {
 const RISE: f64 = 7.0 / 3.0;
 /// The change of half a turn's time is limited to 2^-3 of a turn's.
 const CHANGE_BITS: u32 = 3;
-/// Fraction bits of the coming sector's speed over the last turn's.
-const AHEAD_BITS: u32 = 30;
-const ONE: i32 = 1 << AHEAD_BITS;
+/// Limit of [`Edges::rise`].
+const GREATEST_RISE: f64 = RISE / 8.0;
 
-/// Limit of [`Edges::ahead`].
-fn greatest_ahead() -> f64 {
-    1.0 + RISE * (-f64::from(CHANGE_BITS)).exp2()
-}
-
-/// The speed of the coming sector over that of the last turn, by the change of half a turn's time; added to the
+/// Rise of the speed from the last turn to the coming sector, by the change of half a turn's time; added to the
 /// open stage.
-fn speed_ahead<'b>(
+fn speed_rise<'b>(
     l: &Lowering<'b>,
     intervals: [Expr<'b>; 6],
     [rev, rate]: [Expr<'b>; 2],
@@ -238,7 +232,7 @@ fn speed_ahead<'b>(
     let greatest = turn * (32_f64.exp2() / f64::from(l.spec.rev_min()));
     let shift = (greatest.log2().floor() as u32 + 1).saturating_sub(31);
     let limit = 1 << (32 - shift);
-    let bits = f64::from(shift) - f64::from(CHANGE_BITS + 32 - AHEAD_BITS);
+    let bits = f64::from(shift) - f64::from(CHANGE_BITS);
     let factor = RISE * bits.exp2();
     let k_rise = l.coefficient(
         "k_rise",
@@ -251,9 +245,9 @@ fn speed_ahead<'b>(
         let shortened = (third + second + oldest) - (last + middle + first);
         let eighths = (shortened << CHANGE_BITS).within(rev);
         let change = eighths.mul_floor(rate, shift).clamp(-limit, limit);
-        let ahead_seen = k_rise * change + ONE;
+        let rise_seen = k_rise * change;
     }
-    ahead_seen
+    rise_seen
 }
 
 impl<'b> RotorWords<'b> {
@@ -262,11 +256,10 @@ impl<'b> RotorWords<'b> {
         let age_max = i64::from(l.spec.age_max());
         let rest = PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest;
         let omega_max = ((1 << 32) - 1) / i64::from(l.spec.rev_min());
-        let one = i64::from(ONE);
         let tells_rise = tells_rise(l.spec);
-        let risen = if tells_rise { greatest_ahead() } else { 1.0 };
-        let turn_max = (SIXTH / 2).min(greatest_turn(l.spec, risen).ceil() as i64);
-        let rise_max = ((greatest_ahead() - 1.0) * f64::from(ONE)).ceil() as i64;
+        let greatest_rise = if tells_rise { GREATEST_RISE } else { 0.0 };
+        let turn_max = greatest_turn(l.spec, 1.0 + greatest_rise).ceil() as i64;
+        let turn_max = turn_max.min(SIXTH / 2);
         let word = |name, initial, low, high, doc| {
             l.b.memory(name, initial, Interval::new(low, high), doc)
         };
@@ -298,9 +291,11 @@ impl<'b> RotorWords<'b> {
                 omega_max,
                 "Electrical angle per tick, mean of the last turn, 2^32 a turn; 0 while unknown.",
             ),
-            ahead: tells_rise.then(|| {
-                let doc = "Speed of this sector over the mean of the last turn, 2^30 for 1.";
-                word("ahead", ONE, one - rise_max, one + rise_max, doc)
+            rise: tells_rise.then(|| {
+                let most = (greatest_rise * 32_f64.exp2()).ceil() as i64;
+                let doc =
+                    "Rise of the speed from the mean of the last turn to this sector, 2^32 for 1.";
+                word("rise", 0, -most, most, doc)
             }),
             step_angle: word(
                 "step_angle",
@@ -366,7 +361,7 @@ impl<'b> RotorWords<'b> {
     ) -> Edges<'b> {
         let old = self.direction.read();
         let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
-        let (step_angle, ahead) = (self.step_angle.read(), self.ahead.map(Memory::read));
+        let (step_angle, rise) = (self.step_angle.read(), self.rise.map(Memory::read));
         let intervals = self.intervals.map(Memory::read);
         l.b.guarded_stage(
             "measure_speed",
@@ -397,8 +392,8 @@ impl<'b> RotorWords<'b> {
         let doc = "Ticks of an electrical turn at the greatest speed.";
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over().named("rate");
-        let ahead = ahead.map(|old| (speed_ahead(l, seen, [rev_seen, rate]), old));
-        let turn = turn_of_period(l, rate, ahead.map(|(ahead, _)| ahead));
+        let rise = rise.map(|old| (speed_rise(l, seen, [rev_seen, rate]), old));
+        let turn = turn_of_period(l, rate, rise.map(|(rise, _)| rise));
         named! {
             let known = edges_counted.is(2);
             let omega_seen = known.choose(rate, 0);
@@ -411,9 +406,9 @@ impl<'b> RotorWords<'b> {
             ("omega_now", omega_seen, omega),
             ("step_angle_now", step_angle_seen, step_angle),
         ]);
-        let ahead = ahead.map(|(seen, old)| l.b.join([("ahead_now", seen, old)])[0]);
-        if let Some((word, ahead)) = self.ahead.zip(ahead) {
-            word.set(ahead);
+        let rise = rise.map(|(seen, old)| l.b.join([("rise_now", seen, old)])[0]);
+        if let Some((word, rise)) = self.rise.zip(rise) {
+            word.set(rise);
         }
         self.direction.set(direction);
         self.age_prev.set(age);
@@ -425,7 +420,7 @@ impl<'b> RotorWords<'b> {
             counted,
             rev,
             omega,
-            ahead,
+            rise,
             step_angle,
             age,
         }
@@ -503,8 +498,8 @@ fn interpolate<'b>(
         let last = last_of_sector(l, hall.sector);
     }
     let progress = turning.omega.mul_limited(seen.age, last);
-    let progress = match seen.ahead {
-        Some(ahead) => progress.mul_floor(ahead, AHEAD_BITS).min(last),
+    let progress = match seen.rise {
+        Some(rise) => risen(progress.named("mean_progress"), rise).min(last),
         None => progress,
     };
     let progress = progress.named("progress");
@@ -587,8 +582,13 @@ fn sector_starts(degrees: [f64; 6]) -> Vec<i32> {
     std::iter::once(0).chain(degrees.map(start)).collect()
 }
 
-/// The rotor's angle per control period at this speed; `ahead` as in [`Edges`].
-fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>, ahead: Option<Expr<'b>>) -> Expr<'b> {
+/// An angle at the mean speed of the last turn, at this sector's.
+fn risen<'b>(angle: Expr<'b>, rise: Expr<'b>) -> Expr<'b> {
+    angle + angle.mul_floor(rise, 32)
+}
+
+/// The rotor's angle per control period at this speed; `rise` as in [`Edges`].
+fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>, rise: Option<Expr<'b>>) -> Expr<'b> {
     let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
     let turn = if ticks.are_whole() {
         ticks.number(l) * omega
@@ -603,10 +603,10 @@ fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>, ahead: Option<Expr<'b>>
         k_ticks * omega
     };
     let turn = limited_turn(l, turn, 1.0);
-    let Some(ahead) = ahead else {
+    let Some(rise) = rise else {
         return turn;
     };
-    limited_turn(l, turn.mul_floor(ahead, AHEAD_BITS), greatest_ahead())
+    limited_turn(l, risen(turn.named("mean_turn"), rise), 1.0 + GREATEST_RISE)
 }
 
 /// Greatest angle per period, of the greatest mean speed with a factor.

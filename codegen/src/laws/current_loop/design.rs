@@ -24,7 +24,8 @@ pub struct LoopDesign {
     /// Largest plausible change of current per period, ampere: twice the one of the largest bus or
     /// of the ADC's range, rounded up to a power of two of ADC counts for a saturating instruction.
     pub di_limit: f64,
-    /// Largest plausible zero-sum phase EMF, volt.
+    /// Largest plausible zero-sum phase EMF, volt: one and a half times that of the greatest speed, up to the next
+    /// power of two of timer counts, at which a saturating instruction limits.
     pub e_limit: f64,
     /// Limit of the modelled EMF's error, volt: half the largest bus, up to the next power of two of
     /// timer counts, at which a saturating instruction limits.
@@ -81,6 +82,7 @@ impl LoopDesign {
         let count = inverter.adc_gain.abs();
         let volt = inverter.v_bus / f64::from(inverter.timer_period);
         let span = f64::from((1_u32 << inverter.adc_bits) - 1);
+        let saturated = |volts: f64| (volts / volt).log2().ceil().exp2() * volt;
         let possible = plant.gain * 4.0 / 3.0 * inverter.greatest_bus() / count;
         Self {
             plant,
@@ -89,8 +91,8 @@ impl LoopDesign {
             k_hold: k_di * hold,
             k_decay: 1.0 - plant.pole,
             di_limit: (2.0 * possible.min(span)).log2().ceil().exp2() * count,
-            e_limit: 1.5 * motor.emf_constant * inverter.maximum_speed,
-            emf_error_limit: (inverter.greatest_bus() / volt / 2.0).log2().ceil().exp2() * volt,
+            e_limit: saturated(1.5 * motor.emf_constant * inverter.maximum_speed),
+            emf_error_limit: saturated(inverter.greatest_bus() / 2.0),
             observer_gain: OBSERVER_GAIN * longest_shape(spec).powi(2),
             slope: match shape {
                 EmfShape::Sinusoidal | EmfShape::Harmonics(_) => electrical / (3f64.sqrt() * line),

@@ -6,7 +6,9 @@
 
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, read};
-use crate::blocks::{Lowering, Rotor, SHAPE_BITS, model_emf, model_target_emf, product_bound};
+use crate::blocks::{
+    Lowering, Rotor, SHAPE_BITS, lifted, model_emf, model_target_emf, product_bound,
+};
 use crate::ir::{Coefficient, Expr, Memory, Phases, mul_add_floor, named, pick};
 use crate::spec::EmfSource;
 
@@ -141,27 +143,26 @@ impl<'b> CurrentLoop<'_, 'b> {
         let e_model = model_target_emf(l, rotor, self.options.delay, self.design.e_limit);
         let residual = self.emf_residual(words, i)?;
         let lines = shape_lines(shape);
-        l.b.guarded_stage(
+        l.b.stage(
             "correct_emf_error",
-            rotor.tracking,
-            false,
             &[
                 "Correction of the EMF error by the components of the residual along the shape (q) and across it (d), which are",
-                "2/3 and 2/sqrt(3) of these sums, with a gain of 3/32. The d component is stored over sqrt(3).",
+                "2/3 and 2/sqrt(3) of these sums, with a gain of 3/32. The d component is stored over sqrt(3). Without an angle it",
+                "stays.",
             ],
         );
-        let ([r_a, r_b], [p_a, p_b], [line_a, line_b]) = (residual.0, shape.0, lines.0);
+        named! {
+            let learnt = residual.map(|volts| rotor.tracking.choose(volts, 0));
+        }
+        let ([r_a, r_b], [p_a, p_b], [line_a, line_b]) = (learnt.0, shape.0, lines.0);
         let old = memories.map(Memory::read);
         let along = mul_add_floor([r_a, line_a], [r_b, line_b], OBSERVER_SHIFT);
         let across = mul_add_floor([r_b, p_a], [-r_a, p_b], OBSERVER_SHIFT);
         named! {
-            let e_error_q_now = self.plausible_error(old[0] + along);
-            let e_error_d_now = self.plausible_error(old[1] + across);
+            let e_error_q_next = self.plausible_error(old[0] + along);
+            let e_error_d_next = self.plausible_error(old[1] + across);
         }
-        let [q, d] = l.b.join([
-            ("e_error_q_next", e_error_q_now, old[0]),
-            ("e_error_d_next", e_error_d_now, old[1]),
-        ]);
+        let [q, d] = [e_error_q_next, e_error_d_next];
         let doc = "Error of the modelled EMF, after one step";
         l.state_volts("e_error_q", q, doc);
         l.state_volts("e_error_d", d, doc);
@@ -169,9 +170,10 @@ impl<'b> CurrentLoop<'_, 'b> {
         let residual_count = watch.map(|watch| watch.watch(l, residual, [q, d], rotor, set_point));
         let doc = "EMF over the target period: the modelled one plus its error, which turns with the rotor.";
         l.b.stage("observe_emf", &[doc]);
+        let ([along, across], shift) = lifted([("q_lifted", q), ("d_lifted", d)]);
         let error = Phases([
-            mul_add_floor([q, p_a], [-d, line_b], SHAPE_BITS),
-            mul_add_floor([q, p_b], [d, line_a], SHAPE_BITS),
+            mul_add_floor([along, p_a], [-across, line_b], shift),
+            mul_add_floor([along, p_b], [across, line_a], shift),
         ]);
         let limit = 2 * self.emf_error_limit();
         let doc =

@@ -437,7 +437,7 @@ impl<W: Word> BitTrue<W> {
                 j * sector::CORNER_A[sector_eff],
                 j * sector::CORNER_B[sector_eff],
             ],
-            Reference::Proportional => shape.map(|shape| k.shape_product.round_product(shape, j)),
+            Reference::Proportional => shape.map(|shape| k.shape_product.floor_product(shape, j)),
         };
 
         // 8 EMF
@@ -468,7 +468,7 @@ impl<W: Word> BitTrue<W> {
                         within(
                             floor_weighted(to[x] - from[x], k.flux_to_voltage),
                             -k.e_max,
-                            k.e_max,
+                            k.e_max - 1.0,
                         )
                     })
                 };

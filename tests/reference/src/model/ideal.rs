@@ -13,7 +13,7 @@ use super::hall::{GREATEST_CHANGE, HallClock, RISE};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Trace};
-use super::variant::{Variant, allowed_residual, emf_error_limit};
+use super::variant::{Variant, allowed_residual, emf_error_limit, emf_limit};
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
@@ -147,7 +147,7 @@ impl Ideal {
             bus_count_max: bus_sense.map_or(0.0, |bus| f64::from((1u32 << bus.adc_bits) - 1)),
             timer_period: inverter.timer_period as u16,
             di_limit: phase.di_limit(inverter)? * gain,
-            e_max: 1.5 * motor.emf_constant * inverter.omega_max,
+            e_max: emf_limit(spec) * inverter.v_bus / f64::from(inverter.timer_period),
             motion: EmfMotion::new(spec)?,
             v_largest: inverter.v_bus_max()?,
             emf_error_limit: emf_error_limit(spec)? * inverter.v_bus

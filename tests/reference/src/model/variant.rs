@@ -204,6 +204,14 @@ pub fn emf_error_limit(spec: &Spec) -> Result<f64, Error> {
     Ok((inverter.v_bus_max()? / count / 2.0).log2().ceil().exp2())
 }
 
+/// Largest plausible EMF, timer counts of voltage: a power of two.
+pub fn emf_limit(spec: &Spec) -> f64 {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let count = inverter.v_bus / f64::from(inverter.timer_period);
+    let fastest = 1.5 * motor.emf_constant * inverter.omega_max;
+    (fastest / count).log2().ceil().exp2()
+}
+
 /// Residual allowed by the residual watch: volt always, volt per ampere of the set-point, volt per
 /// electrical radian per second, and in its place volt while the angle is unknown.
 pub fn allowed_residual(spec: &Spec) -> [f64; 4] {

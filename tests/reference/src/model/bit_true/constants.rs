@@ -7,7 +7,7 @@ use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
 use crate::model::hall::HallClock;
-use crate::model::variant::{Variant, emf_error_limit, reference_gain};
+use crate::model::variant::{Variant, emf_error_limit, emf_limit, reference_gain};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Saturation, Spec, Switch,
 };
@@ -292,7 +292,7 @@ impl<W: Word> Constants<W> {
                 (Part::Edges, rotor || commutation.is_some() || fades),
                 (Part::Direction, rotor || commutation.is_some() || fades),
                 (Part::Rotor, rotor),
-                (Part::Ahead, rotor && clock.tells_rise),
+                (Part::Rise, rotor && clock.tells_rise),
                 (Part::OverSpeed, inverter.over_speed_turn.is_some()),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Ramp, variant.options.acceleration_limit > 0.0),
@@ -334,7 +334,7 @@ impl<W: Word> Constants<W> {
             i_max_bits,
             t_max_bits,
             comm_samples: f64::from(end.timeout) + 1.0,
-            e_max: round_half_up(1.5 * motor.emf_constant * inverter.omega_max / w * two_v),
+            e_max: emf_limit(spec) * two_v,
             v_largest,
             line_max,
             emf_error_limit: emf_error_limit(spec)? * two_v,

@@ -6,7 +6,7 @@ pub enum Part {
     Edges,
     Direction,
     Rotor,
-    Ahead,
+    Rise,
     OverSpeed,
     Speed,
     Ramp,

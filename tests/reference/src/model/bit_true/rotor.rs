@@ -11,24 +11,14 @@ use crate::model::hall::{HallClock, HallTiming, RISE};
 use crate::model::sector::HallEvent;
 
 /// The rotor's speed, as it was seen at the last edge.
-#[derive(Clone, Copy, Debug)]
-pub struct Speed<W> {
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Speed<W: Word> {
     /// Angle per tick, mean of the last turn.
     pub omega: W,
-    /// This sector's speed over it, 2^30 for 1.
-    pub ahead: W,
+    /// This sector's speed over it less 1, 2^32 for 1.
+    pub rise: W,
     /// Angle per period, signed.
     pub step: W,
-}
-
-impl<W: Word> Default for Speed<W> {
-    fn default() -> Self {
-        Self {
-            omega: word(0.0),
-            ahead: word(pow2(30)),
-            step: word(0.0),
-        }
-    }
 }
 
 /// The rotor at this sample.
@@ -41,7 +31,7 @@ pub struct Angle<W: Word> {
     pub sector_eff: usize,
 }
 
-/// The speed of the coming sector over that of the last turn.
+/// Rise of the speed from the last turn to the coming sector.
 #[derive(Clone, Copy, Debug)]
 pub struct Rise<W> {
     /// Of eight times the change of half a turn's time, with S bits less.
@@ -58,22 +48,22 @@ impl<W: Word> Rise<W> {
         Ok(Self {
             change: Shift::new(shift as u32),
             limit: pow2(32 - shift as i32),
-            factor: scale.coefficient("k_rise", RISE * pow2(shift as i32 - 5))?,
-            whole: Shift::new(30),
+            factor: scale.coefficient("k_rise", RISE * pow2(shift as i32 - 3))?,
+            whole: Shift::new(32),
         })
     }
 
     /// An angle at the last turn's speed, at the coming sector's.
     #[inline]
-    fn risen(&self, angle: W, ahead: W, most: W) -> W {
-        lesser(self.whole.floor_product(angle, ahead), most)
+    fn risen(&self, angle: W, rise: W, most: W) -> W {
+        lesser(angle + self.whole.floor_product(angle, rise), most)
     }
 
     #[inline]
-    fn ahead(&self, timing: &HallTiming<W>, rate: W) -> W {
+    fn at(&self, timing: &HallTiming<W>, rate: W) -> W {
         let eighths = within(timing.shortened() * 8.0, -timing.rev, timing.rev);
         let change = self.change.floor_product(eighths, rate);
-        self.factor.mul(within(change, -self.limit, self.limit)) + pow2(30)
+        self.factor.mul(within(change, -self.limit, self.limit))
     }
 }
 
@@ -99,8 +89,8 @@ pub fn angle<W: Word>(
         };
         let mut turn = lesser(turn, HALF_SIXTH);
         if let Some(rise) = &k.rise {
-            speed.ahead = rise.ahead(timing, rate);
-            turn = rise.risen(turn, speed.ahead, word(HALF_SIXTH));
+            speed.rise = rise.at(timing, rate);
+            turn = rise.risen(turn, speed.rise, word(HALF_SIXTH));
         }
         if turning {
             (speed.omega, speed.step) = (rate, timing.direction * turn);
@@ -109,7 +99,7 @@ pub fn angle<W: Word>(
     let (start, last) = (k.sectors.start[event.sector], k.sectors.last[event.sector]);
     let mut progress = lesser(speed.omega * timing.age_prev, last);
     if let Some(rise) = &k.rise {
-        progress = rise.risen(progress, speed.ahead, word(last));
+        progress = rise.risen(progress, speed.rise, word(last));
     }
     let in_sector = if !turning {
         word(k.sectors.half[event.sector])

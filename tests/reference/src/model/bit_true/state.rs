@@ -205,8 +205,8 @@ macro_rules! for_each_word {
             $show!("t6", $state.timing.intervals[5]);
             $show!("rev", $state.timing.rev);
             $show!("omega", $state.speed.omega);
-            if $parts.has(Part::Ahead) {
-                $show!("ahead", $state.speed.ahead);
+            if $parts.has(Part::Rise) {
+                $show!("rise", $state.speed.rise);
             }
             $show!("step_angle", $state.speed.step);
         }
