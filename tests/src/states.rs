@@ -298,7 +298,14 @@ impl<'a> States<'a> {
     /// A slow rotor without current: the voltages are those of a small EMF.
     fn slow_down(&mut self, words: &mut [i32]) {
         let bits = self.random.u32(1..24);
-        for name in ["i_a_prev", "i_b_prev", "v_a_prev", "v_b_prev"] {
+        for name in [
+            "i_a_prev",
+            "i_b_prev",
+            "v_a_prev",
+            "v_b_prev",
+            "net_a_prev",
+            "net_b_prev",
+        ] {
             if let Some(place) = self.place(name) {
                 let small = self.random.i32(-(1 << bits)..=1 << bits);
                 let (low, high) = self.ranges[place];

@@ -38,7 +38,7 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[
     ),
     (
         2,
-        "table entry one more: SHAPE_ROWS[124].c0",
+        "table entry one more: SHAPE_ROWS[124].c2",
         "the table has 96 entries, padded to a power of two",
     ),
     (

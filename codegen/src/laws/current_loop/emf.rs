@@ -16,9 +16,8 @@ use crate::spec::EmfSource;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Emf<'b> {
     pub target: Phases<'b>,
-    pub present: Phases<'b>,
-    /// EMF of the present period that the next step's estimate starts from.
-    pub expected: Phases<'b>,
+    /// None where the state holds the net voltage of that period.
+    pub present: Option<Phases<'b>>,
     /// Error of the modelled EMF, q and d.
     pub error: Option<[Expr<'b>; 2]>,
     /// Count of the residual watch, and its new value.
@@ -61,8 +60,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let model = model_emf(self.l, rotor, delay, e_limit);
                 return Some(Emf {
                     target: model.target,
-                    present: model.present,
-                    expected: model.present,
+                    present: Some(model.present),
                     error: None,
                     residual_count: None,
                 });
@@ -77,8 +75,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (target, present) = self.move_emf(sector, e);
         Some(Emf {
             target,
-            present,
-            expected: present,
+            present: Some(present),
             error: None,
             residual_count: None,
         })
@@ -100,9 +97,15 @@ impl<'b> CurrentLoop<'_, 'b> {
         }
     }
 
-    /// EMF of the period that just ended, (9) in its causal form; added to the open stage.
-    fn see_emf(&self, words: &Words<'b>, i: Phases<'b>, sight: Sight) -> Option<Phases<'b>> {
-        let (i_prev, v_prev) = (read(words.i_prev?), read(words.v_prev?));
+    /// The voltage less that across inductance and resistance in the period that just ended; added to the open
+    /// stage. Of the applied voltage that is the EMF, (9) in its causal form.
+    fn behind_impedance(
+        &self,
+        volts: Phases<'b>,
+        i_prev: Phases<'b>,
+        i: Phases<'b>,
+        sight: Sight,
+    ) -> Phases<'b> {
         // A power of two.
         let limit = self.l.ampere_word(self.design.di_limit);
         let doc = "Largest plausible change of current in one period";
@@ -110,9 +113,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         let high = || self.l.current("di_max", limit - 1, doc);
         named! {
             let di = (i - i_prev).map(|di| di.clamp(low(), high()));
-            let e_seen = v_prev - sight.k_di * di - sight.k_r * i_prev;
         }
-        Some(e_seen)
+        volts - sight.k_di * di - sight.k_r * i_prev
     }
 
     fn sight(&self) -> Sight {
@@ -184,11 +186,10 @@ impl<'b> CurrentLoop<'_, 'b> {
             });
         }
         // The last step's target is the period that begins now.
-        let present = words.e_next.map_or(e, read);
+        let expected = words.e_next.map(read);
         Some(Emf {
             target: e,
-            present,
-            expected: present,
+            present: expected.or_else(|| words.net_next.is_none().then_some(e)),
             error: Some([q, d]),
             residual_count,
         })
@@ -200,14 +201,14 @@ impl<'b> CurrentLoop<'_, 'b> {
         self.l.b.stage(
             "emf_residual",
             &[
-                "Residual: the EMF of the last period from its voltage and currents, e = v - K (i - i_prev) - R i_prev,",
-                "minus the expected one.",
+                "Residual: the net voltage of the last period, v - e, less that across inductance and resistance,",
+                "K (i - i_prev) + R i_prev: the EMF beyond the expected one.",
             ],
         );
-        let seen = self.see_emf(words, i, sight)?;
-        let e_prev = read(words.e_prev?);
+        let (net, i_prev) = (read(words.net_prev?), read(words.i_prev?));
+        let open = self.behind_impedance(net, i_prev, i, sight);
         named! {
-            let residual = (seen - e_prev).map(|volts| self.plausible_error(volts));
+            let residual = open.map(|volts| self.plausible_error(volts));
         }
         Some(residual)
     }
@@ -243,10 +244,13 @@ impl<'b> CurrentLoop<'_, 'b> {
                 "v is the voltage really applied; the change of current is limited to its plausible range.",
             ],
         );
-        let seen = self.see_emf(words, i, sight)?;
+        let (v_prev, i_prev) = (read(words.v_prev?), read(words.i_prev?));
+        named! {
+            let e_seen = self.behind_impedance(v_prev, i_prev, i, sight);
+        }
         let e = match filter.zip(words.e_prev) {
-            Some((filter, e_prev)) => read(e_prev) + filter * (seen - read(e_prev)),
-            None => seen,
+            Some((filter, e_prev)) => read(e_prev) + filter * (e_seen - read(e_prev)),
+            None => e_seen,
         };
         let e = e.map(|e| plausible(l, e));
         if words.off_prev.is_some() {

@@ -95,10 +95,10 @@ pub struct Front<'b> {
     pub now: Option<Phases<'b>>,
     /// EMF over the target period; if the law needs it.
     pub e: Option<Phases<'b>>,
-    /// EMF over the period that begins now.
+    /// EMF over the period that begins now; none where the state holds the net voltage of that period.
     pub e_now: Option<Phases<'b>>,
-    /// EMF over the present period that the next step's estimate starts from.
-    pub e_expected: Option<Phases<'b>>,
+    /// Net voltage of the period that begins now, v - e; with an observer and delay 1.
+    pub net: Option<Phases<'b>>,
     /// Error of the modelled EMF, q and d; with an observer only.
     pub emf_error: Option<[Expr<'b>; 2]>,
     /// Count of the residual watch, and its new value; with a `residual_timeout` only.
@@ -156,6 +156,18 @@ pub fn unlimited_voltage<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> 
     u_unsat
 }
 
+impl<'b> Front<'b> {
+    /// Voltage less EMF of the period that begins now, with delay 1; added to the open stage.
+    pub fn net_now(&self) -> Option<Phases<'b>> {
+        self.net.or_else(|| {
+            named! {
+                let net_now = self.now? - self.e_now?;
+            }
+            Some(net_now)
+        })
+    }
+}
+
 impl<'b> CurrentLoop<'_, 'b> {
     /// Steps 1 to 8.
     pub fn front(&self, set_point: &SetPointWords<'b>) -> Front<'b> {
@@ -188,7 +200,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             third,
             outgoing,
         );
-        let (e, e_now) = (emf.map(|emf| emf.target), emf.map(|emf| emf.present));
+        let (e, e_now) = (emf.map(|emf| emf.target), emf.and_then(|emf| emf.present));
         let turned = rotor.filter(|_| self.uses_angle());
         self.tell(
             [e, e_now],
@@ -197,6 +209,13 @@ impl<'b> CurrentLoop<'_, 'b> {
         let off_leg = self.off_leg(bus, third);
         let commanded = words.v_cmd.map(read);
         let now = commanded.or_else(|| self.applied_now(&words, currents, e_now, &off_leg));
+        let net = words.net_next.map(read).or_else(|| {
+            words.net_prev?;
+            named! {
+                let net_now = now? - e_now?;
+            }
+            Some(net_now)
+        });
         Front {
             words,
             currents,
@@ -210,7 +229,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             now,
             e,
             e_now,
-            e_expected: emf.map(|emf| emf.expected),
+            net,
             emf_error: emf.and_then(|emf| emf.error),
             residual_count: emf.and_then(|emf| emf.residual_count),
             held,
@@ -343,11 +362,12 @@ impl<'b> CurrentLoop<'_, 'b> {
         (reference, shape)
     }
 
-    /// Observations: the EMF of the target period, or of the present one if the law only predicts,
-    /// and the speed.
+    /// Observations: the EMF of the target period, or of the present one if the law only predicts and computes
+    /// it, and the speed.
     fn tell(&self, [target, present]: [Option<Phases<'b>>; 2], speed: Option<Expr<'b>>) {
         let predicts = self.needs.emf == EmfUse::Prediction;
-        if let Some(e) = if predicts { present } else { target } {
+        let told = present.filter(|_| predicts).or(target);
+        if let Some(e) = told {
             self.l.b.tell(Told::Emf(Phase::A), e.a());
             self.l.b.tell(Told::Emf(Phase::B), e.b());
         }
@@ -418,7 +438,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             &[
                 "Deadbeat voltage, the paper's (11) corrected: v = K (i_ref - a i_pred) + e, with the prediction",
                 "i_pred = a i + b (v_now - e_now) of (7) folded in:",
-                "v = K i_ref - K a^2 i + (1 - a)(v_now - e_now) + e + e_now - v_now.",
+                "v = K i_ref - K a^2 i + (1 - a)(v_now - e_now) + e - (v_now - e_now).",
             ]
         } else {
             &["Deadbeat voltage without computation delay: v = K (i_ref - a i) + e."]
@@ -434,11 +454,9 @@ impl<'b> CurrentLoop<'_, 'b> {
             held
         };
         let open = reference - held;
-        let u = match (k_decay, front.now, front.e, front.e_now) {
-            (Some(k_decay), Some(now), Some(e), Some(e_now)) => {
-                open + k_decay * (now - e_now) + e + e_now - now
-            }
-            (_, _, Some(e), _) => open + e,
+        let u = match (k_decay.zip(front.net_now()), front.e) {
+            (Some((k_decay, net)), Some(e)) => open + k_decay * net + e - net,
+            (None, Some(e)) => open + e,
             _ => open,
         };
         let u = unlimited_voltage(self.l, u);
@@ -490,8 +508,23 @@ impl<'b> CurrentLoop<'_, 'b> {
                 self.applied_to_remember(front, v_cmd, applied),
             );
         }
-        keep(words.e_prev, front.e_expected);
+        keep(words.e_prev, front.e_now);
         keep(words.e_next, front.e);
+        if words.net_prev.is_some() {
+            let net = front.net.or_else(|| {
+                named! {
+                    let net = self.applied_to_remember(front, v_cmd, applied)? - front.e?;
+                }
+                Some(net)
+            });
+            keep(words.net_prev, net);
+        }
+        if let (Some(_), Some((u, e))) = (words.net_next, v_cmd.zip(front.e)) {
+            named! {
+                let net = u - e;
+            }
+            keep(words.net_next, Some(net));
+        }
         keep(words.emf_error, front.emf_error.map(Phases));
         keep(words.i_prev, Some(front.currents.pair()));
         if let Some(off_prev) = words.off_prev {

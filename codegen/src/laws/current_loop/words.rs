@@ -74,10 +74,14 @@ pub struct Words<'b> {
     pub v_prev: Option<[Memory<'b>; 2]>,
     /// Off leg of the last period.
     pub off_prev: Option<Memory<'b>>,
-    /// EMF expected for the last period.
+    /// EMF expected for the last period; of an estimate.
     pub e_prev: Option<[Memory<'b>; 2]>,
-    /// EMF expected of the period that begins now.
+    /// EMF expected of the period that begins now; of an observer whose command may turn a leg off.
     pub e_next: Option<[Memory<'b>; 2]>,
+    /// Net voltage of the last period; of an observer.
+    pub net_prev: Option<[Memory<'b>; 2]>,
+    /// Net voltage of the period that begins now; of an observer whose commands drive every leg.
+    pub net_next: Option<[Memory<'b>; 2]>,
     /// Error of the modelled EMF, q and d.
     pub emf_error: Option<[Memory<'b>; 2]>,
     /// Residual watch.
@@ -125,7 +129,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         };
         let volts = Interval::symmetric(l.bus_interval().high);
         let is_delayed = options.delay == 1;
-        let needs_command = is_delayed && !needs.off_leg && !self.holds_emf();
+        let needs_command = is_delayed && !needs.off_leg && !self.holds_emf() && !observes;
+        let nets = Interval::symmetric(l.bus_interval().high + e_bound);
         Words {
             sector_prev: (needs_rotor || needs_direction).then(|| sector_word(l)),
             rotor: needs_rotor.then(|| RotorWords::new(l)),
@@ -146,20 +151,28 @@ impl<'b> CurrentLoop<'_, 'b> {
                 l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
             }),
             t_cmd: (is_delayed && needs.off_leg).then(|| self.terminal_words()),
-            v_prev: sees.then(|| {
+            v_prev: estimated.then(|| {
                 let doc = "Voltage applied in the last period.";
                 l.memories(["v_a_prev", "v_b_prev"], volts, doc)
             }),
             off_prev: (estimated && needs.off_leg).then(|| self.off_leg_word()),
-            e_prev: (observes || estimated && options.emf_filter < 1.0).then(|| {
+            e_prev: (estimated && options.emf_filter < 1.0).then(|| {
                 let range = Interval::symmetric(e_bound + e_moves);
                 let doc = "EMF that the last step expected for the last period.";
                 l.memories(["e_a_prev", "e_b_prev"], range, doc)
             }),
-            e_next: (observes && is_delayed).then(|| {
+            e_next: (observes && is_delayed && needs.off_leg).then(|| {
                 let range = Interval::symmetric(e_bound);
                 let doc = "EMF that the last step expected for the period that begins now.";
                 l.memories(["e_a_next", "e_b_next"], range, doc)
+            }),
+            net_prev: observes.then(|| {
+                let doc = "Net voltage of the last period: the one applied less the EMF that was expected.";
+                l.memories(["net_a_prev", "net_b_prev"], nets, doc)
+            }),
+            net_next: (observes && is_delayed && !needs.off_leg).then(|| {
+                let doc = "Net voltage of the period that begins now: the last step's voltage less the EMF that it expected.";
+                l.memories(["net_a_next", "net_b_next"], nets, doc)
             }),
             emf_error: observes.then(|| self.emf_error_words()),
             residual: (options.residual_periods)

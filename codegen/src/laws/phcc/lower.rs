@@ -121,8 +121,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         };
         l.b.stage("predict_error", doc);
         let open = reference - k_hold * front.currents.pair();
-        let error = match front.now.zip(front.e_now) {
-            Some((now, e_now)) => open - (now - e_now),
+        let error = match front.net_now() {
+            Some(net) => open - net,
             None => open,
         };
         deviation(l, error)

@@ -94,7 +94,7 @@ pub struct Course<W = f64> {
 struct Signals<W> {
     i: [W; 2],
     e: [W; 2],
-    v_now: [W; 2],
+    net: [W; 2],
     u_unsat: [W; 2],
     u: [W; 2],
     theta: W,
@@ -486,7 +486,6 @@ impl<W: Word> BitTrue<W> {
                 }
             }
         };
-        let expected = if delayed { e_now } else { e };
 
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
@@ -498,6 +497,14 @@ impl<W: Word> BitTrue<W> {
             }
         };
 
+        let net = if !self.variant.applied_now {
+            [word(0.0); 2]
+        } else if self.variant.observes() && !self.variant.floating {
+            self.state.net_next
+        } else {
+            both(|x| v_now[x] - e_now[x])
+        };
+
         // 9 to 11, specific to the controller
         let decision = self.law.decide(&Inputs {
             k,
@@ -505,9 +512,8 @@ impl<W: Word> BitTrue<W> {
             to_duty: &self.to_duty,
             j: j_ref,
             i,
-            v_now,
+            net,
             e,
-            e_now,
             sector_eff,
             commutating,
             integral: self.state.integral,
@@ -548,10 +554,16 @@ impl<W: Word> BitTrue<W> {
             if let Some(limit) = &self.bus_current {
                 limit.follow(&self.k, &mut self.state, i_abc, command.legs);
             }
+            self.state.net_prev = if delayed {
+                net
+            } else {
+                both(|x| self.state.v_prev[x] - e[x])
+            };
+            self.state.net_next = both(|x| decision.u[x] - e[x]);
             self.state.v_cmd = decision.u;
             self.state.t_cmd = command.terminal;
             self.state.off_cmd = command.off;
-            self.state.e_prev = expected;
+            self.state.e_prev = e_now;
             self.state.e_next = e;
             self.state.emf_error = emf_error;
             self.state.residual_count = residual_count;
@@ -574,7 +586,7 @@ impl<W: Word> BitTrue<W> {
         self.last = Signals {
             i,
             e,
-            v_now,
+            net,
             u_unsat: decision.u_unsat,
             u: decision.u,
             theta: angle.theta,

@@ -392,7 +392,7 @@ impl Ideal {
         let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
-                let raw = self.emf_seen([i_a, i_b]);
+                let raw = self.behind(self.state.v_prev, [i_a, i_b]);
                 let [e_a, e_b] = self.state.e_prev;
                 let e_prev = from_ab(e_a, e_b);
                 let [e_a, e_b] =
@@ -430,7 +430,6 @@ impl Ideal {
             }
         };
 
-        let expected = if delayed { e_now } else { e };
         let [s_a, s_b] = self.state.integral;
         let integral = from_ab(s_a, s_b);
 
@@ -446,6 +445,14 @@ impl Ideal {
             ),
         };
 
+        let net = if !self.variant.applied_now {
+            Vector2::zeros()
+        } else if self.variant.observes() && !self.variant.floating {
+            from_ab(self.state.net_next[0], self.state.net_next[1])
+        } else {
+            v_now - e_now
+        };
+
         // 9 to 11, specific to the controller
         let decision = self.law.decide(&Inputs {
             phase: self.phase,
@@ -453,9 +460,8 @@ impl Ideal {
             v_bus: self.v_bus,
             i_ref,
             i,
-            v_now,
+            net,
             e,
-            e_now,
             sector_eff,
             commutating,
             integral,
@@ -491,10 +497,13 @@ impl Ideal {
                 command.off
             };
             self.follow_bus_current(&i_abc, command.duties);
+            let [v_a, v_b] = self.state.v_prev;
+            self.state.net_prev = to_ab(&if delayed { net } else { from_ab(v_a, v_b) - e });
+            self.state.net_next = to_ab(&(u - e));
             self.state.v_cmd = to_ab(&u);
             self.state.t_cmd = command.terminal.into();
             self.state.off_cmd = command.off;
-            self.state.e_prev = to_ab(&expected);
+            self.state.e_prev = to_ab(&e_now);
             self.state.e_next = to_ab(&e);
             self.state.emf_error = emf_error;
             self.state.residual_count = residual_count;
@@ -515,6 +524,8 @@ impl Ideal {
             self.state.off_prev = None;
             self.state.e_prev = [0.0; 2];
             self.state.e_next = [0.0; 2];
+            self.state.net_prev = [0.0; 2];
+            self.state.net_next = [0.0; 2];
             self.state.emf_error = [0.0; 2];
             self.state.residual_count = 0.0;
             self.state.integral = [0.0; 2];
@@ -534,7 +545,7 @@ impl Ideal {
         self.trace = Trace {
             i: [i_a, i_b],
             e: to_ab(&e),
-            v_now: to_ab(&v_now),
+            net: to_ab(&net),
             u_unsat: to_ab(&decision.u_unsat),
             u: to_ab(&u),
             theta,

@@ -11,8 +11,8 @@ pub struct Trace {
     pub i: [f64; 2],
     /// EMF in the target period, volt.
     pub e: [f64; 2],
-    /// Voltage applied in the period that starts now, volt (0 if the variant does not use it).
-    pub v_now: [f64; 2],
+    /// Net voltage of the period that starts now, the applied one less the EMF, volt (0 if the variant does not use it).
+    pub net: [f64; 2],
     /// Demanded voltage before limiting, volt (PHCC: 1/b times the predicted error).
     pub u_unsat: [f64; 2],
     /// The same after limiting, or that of the chosen vector, volt.
@@ -84,6 +84,10 @@ pub struct PhysicalState {
     pub e_prev: [f64; 2],
     /// EMF expected of the period that begins with the next sample, phases a, b, volt.
     pub e_next: [f64; 2],
+    /// Net voltage of the last period, volt.
+    pub net_prev: [f64; 2],
+    /// Net voltage that the last step expected for the period that begins now, volt.
+    pub net_next: [f64; 2],
     /// Error of the modelled EMF: q along the proportional current, d across it over sqrt(3), volt.
     pub emf_error: [f64; 2],
     /// Periods in which the currents did not follow the voltages, less those in which they did.

@@ -129,7 +129,7 @@ fn compare(
         return;
     }
     // The end of a commutation, a clamped leg.
-    if b.commutating != a.commutating || (b.v_now[0] - a.v_now[0]).abs() > 0.1 {
+    if b.commutating != a.commutating || (b.net[0] - a.net[0]).abs() > 0.1 {
         worst.decided_otherwise += 1;
         return;
     }

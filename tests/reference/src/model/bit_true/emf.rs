@@ -5,20 +5,19 @@ use super::state::State;
 use crate::exact::{Word, both, halve, within, word};
 use crate::model::sector::OUT_PHASE;
 
-/// Observed EMF of phases a, b in the period that ends with the currents `i`.
+/// Voltage of phases a, b less that across inductance and resistance in the period that ends with the currents `i`.
 #[inline]
-fn seen<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
-    let State { i_prev, v_prev, .. } = state;
+fn behind<W: Word>(k: &Constants<W>, i_prev: [W; 2], i: [W; 2], volts: [W; 2]) -> [W; 2] {
     both(|x| {
         let d = within(i[x] - i_prev[x], -k.di_limit, k.di_limit - 1.0);
-        v_prev[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x])
+        volts[x] - k.k_di.mul(d) - k.k_r.mul(i_prev[x])
     })
 }
 
 /// EMF of phases a, b in the period that ends with the currents `i`.
 #[inline]
 pub fn estimate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
-    let (seen, e_prev) = (seen(k, state, i), &state.e_prev);
+    let (seen, e_prev) = (behind(k, state.i_prev, i, state.v_prev), &state.e_prev);
     both(|x| {
         let e = if k.filtered {
             e_prev[x] + k.k_filter.mul(seen[x] - e_prev[x])
@@ -32,11 +31,9 @@ pub fn estimate<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2
 /// Observed EMF of phases a, b less the expected one.
 #[inline]
 pub fn residual<W: Word>(k: &Constants<W>, state: &State<W>, i: [W; 2]) -> [W; 2] {
-    let seen = seen(k, state, i);
-    both(|x| {
-        let most = k.emf_error_limit;
-        within(seen[x] - state.e_prev[x], -most, most - 1.0)
-    })
+    let beyond = behind(k, state.i_prev, i, state.net_prev);
+    let most = k.emf_error_limit;
+    beyond.map(|volts| within(volts, -most, most - 1.0))
 }
 
 /// Error of the modelled EMF, q and d, corrected by the residual of the period that has ended.

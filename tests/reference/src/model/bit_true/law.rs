@@ -32,11 +32,10 @@ pub struct Inputs<'a, W> {
     pub to_duty: &'a Coefficient<W>,
     pub j: [W; 2],
     pub i: [W; 2],
-    pub v_now: [W; 2],
+    /// Net voltage of the period that starts now, with delay 1: the applied one less the EMF.
+    pub net: [W; 2],
     /// EMF in the target period.
     pub e: [W; 2],
-    /// EMF in the period that starts now.
-    pub e_now: [W; 2],
     pub sector_eff: usize,
     pub commutating: bool,
     pub integral: [W; 2],

@@ -26,7 +26,7 @@ impl BitTrue {
         let Signals {
             i,
             e,
-            v_now,
+            net,
             u_unsat,
             u,
             theta,
@@ -41,7 +41,7 @@ impl BitTrue {
         Trace {
             i: i.map(|word| word * self.k.ampere),
             e: e.map(|word| word * self.k.volt),
-            v_now: v_now.map(|word| word * self.k.volt),
+            net: net.map(|word| word * self.k.volt),
             u_unsat: u_unsat.map(|word| word * self.k.volt),
             u: u.map(|word| word * self.k.volt),
             theta: theta * turn,
@@ -97,6 +97,8 @@ impl State<f64> {
             off_prev: self.off_prev.checked_sub(1),
             e_prev: volts(self.e_prev),
             e_next: volts(self.e_next),
+            net_prev: volts(self.net_prev),
+            net_next: volts(self.net_next),
             emf_error: volts(self.emf_error),
             residual_count: self.residual_count,
             integral: volts(self.integral),

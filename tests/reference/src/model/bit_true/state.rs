@@ -41,6 +41,8 @@ pub struct State<W: Word> {
     pub off_prev: usize,
     pub e_prev: [W; 2],
     pub e_next: [W; 2],
+    pub net_prev: [W; 2],
+    pub net_next: [W; 2],
     /// `e_error_q`, `e_error_d`.
     pub emf_error: [W; 2],
     pub residual_count: W,
@@ -253,7 +255,7 @@ macro_rules! for_each_word {
             $show!("t_c_cmd", $state.t_cmd[2]);
             $show!("off_cmd", $state.off_cmd);
         }
-        if $parts.has(Part::Sight) {
+        if $parts.has(Part::VoltageMemory) {
             $show!("v_a_prev", $state.v_prev[0]);
             $show!("v_b_prev", $state.v_prev[1]);
         }
@@ -267,6 +269,14 @@ macro_rules! for_each_word {
         if $parts.has(Part::EmfNext) {
             $show!("e_a_next", $state.e_next[0]);
             $show!("e_b_next", $state.e_next[1]);
+        }
+        if $parts.has(Part::NetMemory) {
+            $show!("net_a_prev", $state.net_prev[0]);
+            $show!("net_b_prev", $state.net_prev[1]);
+        }
+        if $parts.has(Part::NetNext) {
+            $show!("net_a_next", $state.net_next[0]);
+            $show!("net_b_next", $state.net_next[1]);
         }
         if $parts.has(Part::EmfError) {
             $show!("e_error_q", $state.emf_error[0]);
@@ -347,6 +357,8 @@ impl<W: Word> State<W> {
         self.off_prev = 0;
         self.e_prev = [word(0.0); 2];
         self.e_next = [word(0.0); 2];
+        self.net_prev = [word(0.0); 2];
+        self.net_next = [word(0.0); 2];
         self.emf_error = [word(0.0); 2];
         self.residual_count = word(0.0);
         self.integral = [word(0.0); 2];

@@ -36,16 +36,16 @@ impl Ideal {
         seen + clarke(&axis) * 1.5
     }
 
-    /// Observed EMF of the period that ends with the currents `i` of phases a, b: v - (i - a
-    /// i_prev)/b.
-    pub(super) fn emf_seen(&self, i: [f64; 2]) -> Vector2<f64> {
+    /// Voltage less that across inductance and resistance in the period that ends with the currents `i` of phases a,
+    /// b: v - (i - a i_prev)/b; of the applied voltage that is the EMF.
+    pub(super) fn behind(&self, [v_a, v_b]: [f64; 2], i: [f64; 2]) -> Vector2<f64> {
         let [pa, pb] = self.state.i_prev;
         let change = |now: f64, before: f64| (now - before).clamp(-self.di_limit, self.di_limit);
         let d = from_ab(change(i[0], pa), change(i[1], pb));
         let i_prev = from_ab(pa, pb);
         let DiscretePhase { a, b } = self.phase;
         // i - a i_prev = d + (1 - a) i_prev.
-        from_ab(self.state.v_prev[0], self.state.v_prev[1]) - (d + i_prev * (1.0 - a)) / b
+        from_ab(v_a, v_b) - (d + i_prev * (1.0 - a)) / b
     }
 
     /// An EMF clamped to the largest bus.
@@ -98,9 +98,8 @@ impl Ideal {
     /// Observed EMF of phases a, b less the expected one, in the period that ends with the currents
     /// `i`.
     pub(super) fn residual(&self, i: [f64; 2]) -> [f64; 2] {
-        let [e_a, e_b] = self.state.e_prev;
         let most = self.emf_error_limit;
-        to_ab(&(self.emf_seen(i) - from_ab(e_a, e_b))).map(|volts| volts.clamp(-most, most))
+        to_ab(&self.behind(self.state.net_prev, i)).map(|volts| volts.clamp(-most, most))
     }
 
     /// Count of the residual watch after a period with this residual of phases a, b; the EMF's error

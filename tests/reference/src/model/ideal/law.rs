@@ -28,11 +28,10 @@ pub struct Inputs {
     pub v_bus: f64,
     pub i_ref: Vector2<f64>,
     pub i: Vector2<f64>,
-    pub v_now: Vector2<f64>,
+    /// Net voltage of the period that starts now, with delay 1: the applied one less the EMF.
+    pub net: Vector2<f64>,
     /// EMF in the target period.
     pub e: Vector2<f64>,
-    /// EMF in the period that starts now.
-    pub e_now: Vector2<f64>,
     pub sector_eff: usize,
     pub commutating: bool,
     pub integral: Vector2<f64>,

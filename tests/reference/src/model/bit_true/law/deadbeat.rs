@@ -96,8 +96,7 @@ impl<W: Word> Deadbeat<W> {
         both(|x| {
             let held = now.j[x] - held[x];
             if self.delayed {
-                held + self.k_decay.mul(now.v_now[x] - now.e_now[x]) + now.e[x] + now.e_now[x]
-                    - now.v_now[x]
+                held + self.k_decay.mul(now.net[x]) + now.e[x] - now.net[x]
             } else {
                 held + now.e[x]
             }

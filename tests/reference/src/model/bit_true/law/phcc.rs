@@ -71,7 +71,7 @@ impl<W: Word> Phcc<W> {
             }
             let held = now.j[x] - self.k_hold.mul(now.i[x]);
             if self.delayed {
-                held - (now.v_now[x] - now.e_now[x])
+                held - now.net[x]
             } else {
                 held
             }

@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 pub fn current_then(now: &Inputs) -> Vector2<f64> {
     let DiscretePhase { a, b } = now.phase;
     if now.delayed {
-        now.i * a + (now.v_now - now.e_now) * b
+        now.i * a + now.net * b
     } else {
         now.i
     }
