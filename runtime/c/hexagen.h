@@ -291,11 +291,48 @@ static inline bool hexagen_exceeds(int32_t x, int32_t limit)
     return (uint32_t)x + (uint32_t)limit > UINT32_C(2) * (uint32_t)limit;
 }
 
+/** Whether the core has no instruction for a 64-bit product. */
+#if defined(__ARM_ARCH_6M__) || defined(__ARM_ARCH_8M_BASE__)
+enum { HEXAGEN_BY_HALVES = 1 };
+#else
+enum { HEXAGEN_BY_HALVES = 0 };
+#endif
+
+/** floor(a b / 2^32) from 32-bit products of half words: a third of the library function's instructions. */
+static inline int32_t hexagen_upper_by_halves(int32_t a, int32_t b)
+{
+    const int32_t a_upper = hexagen_shift_right(a, 16U), b_upper = hexagen_shift_right(b, 16U);
+    const uint32_t a_lower = (uint32_t)a & 0xffffU, b_lower = (uint32_t)b & 0xffffU;
+    const int32_t crossed = a_upper * (int32_t)b_lower + (int32_t)((a_lower * b_lower) >> 16);
+    const int32_t rest = (int32_t)((uint32_t)crossed & 0xffffU);
+    return a_upper * b_upper + hexagen_shift_right(crossed, 16U)
+        + hexagen_shift_right((int32_t)a_lower * b_upper + rest, 16U);
+}
+
+/** The lower word of a b. */
+static inline uint32_t hexagen_lower_product(int32_t a, int32_t b)
+{
+    return (uint32_t)a * (uint32_t)b;
+}
+
+/** a b */
+static inline int64_t hexagen_product(int32_t a, int32_t b)
+{
+    if (HEXAGEN_BY_HALVES) {
+        return hexagen_upper_by_halves(a, b) * INT64_C(4294967296) + hexagen_lower_product(a, b);
+    }
+    return (int64_t)a * b;
+}
+
 /** floor((coefficient signal + 2^(shift-1)) / 2^shift): rounded half up. */
 static inline int32_t hexagen_mul_round(int32_t coefficient, int32_t signal, uint16_t shift)
 {
     const int64_t half = INT64_C(1) << (shift - 1);
-    return hexagen_shift_right_wide((int64_t)coefficient * signal + half, shift);
+    if (HEXAGEN_BY_HALVES && shift == 32U) {
+        return hexagen_upper_by_halves(coefficient, signal)
+            + (int32_t)(hexagen_lower_product(coefficient, signal) >> 31);
+    }
+    return hexagen_shift_right_wide(hexagen_product(coefficient, signal) + half, shift);
 }
 
 /** Like hexagen_mul_round, for products that fit a word including their rounding. */
@@ -307,20 +344,28 @@ static inline int32_t hexagen_mul_round_narrow(int32_t coefficient, int32_t sign
 /** floor(a b / 2^shift) */
 static inline int32_t hexagen_mul_floor(int32_t a, int32_t b, uint16_t shift)
 {
-    return hexagen_shift_right_wide((int64_t)a * b, shift);
+    if (HEXAGEN_BY_HALVES && shift == 32U) {
+        return hexagen_upper_by_halves(a, b);
+    }
+    return hexagen_shift_right_wide(hexagen_product(a, b), shift);
 }
 
 /** floor((a b + c d) / 2^shift) for a sum that fits 64 bits. */
 static inline int32_t hexagen_mul_add_floor(
     int32_t a, int32_t b, int32_t c, int32_t d, uint16_t shift)
 {
-    return hexagen_shift_right_wide((int64_t)a * b + (int64_t)c * d, shift);
+    if (HEXAGEN_BY_HALVES && shift == 32U) {
+        const uint32_t lower = hexagen_lower_product(a, b);
+        const bool carries = lower + hexagen_lower_product(c, d) < lower;
+        return hexagen_upper_by_halves(a, b) + hexagen_upper_by_halves(c, d) + (carries ? 1 : 0);
+    }
+    return hexagen_shift_right_wide(hexagen_product(a, b) + hexagen_product(c, d), shift);
 }
 
 /** min(a b, limit) for non-negative factors; the product may exceed the word. */
 static inline int32_t hexagen_mul_limited(int32_t a, int32_t b, int32_t limit)
 {
-    const int64_t product = (int64_t)a * b;
+    const int64_t product = hexagen_product(a, b);
     return (product < limit) ? (int32_t)product : limit;
 }
 
@@ -344,9 +389,19 @@ static inline int32_t hexagen_turn_over(int32_t ticks)
     return (int32_t)(UINT32_C(0xffffffff) / (uint32_t)ticks);
 }
 
+/** hexagen_angle_index from products of half words; at most 65536 segments. */
+static inline int32_t hexagen_angle_index_by_halves(int32_t angle, uint32_t segments)
+{
+    const uint32_t upper = (uint32_t)angle >> 16, lower = (uint32_t)angle & 0xffffU;
+    return (int32_t)((upper * segments + ((lower * segments) >> 16)) >> 16);
+}
+
 /** Index, from 0, of the one of `segments` equal parts of a turn that contains the angle. */
 static inline int32_t hexagen_angle_index(int32_t angle, uint32_t segments)
 {
+    if (HEXAGEN_BY_HALVES) {
+        return hexagen_angle_index_by_halves(angle, segments);
+    }
     return (int32_t)(((uint64_t)(uint32_t)angle * segments) >> 32);
 }
 

@@ -13,6 +13,38 @@
 
 pub use crate::word::Word;
 
+/// An ARMv6-M core, which has neither a 64-bit product nor, by which it is told, compare-and-swap.
+const MULTIPLIES_BY_HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
+/// The whole product.
+#[inline(always)]
+fn product(a: Word, b: Word) -> i64 {
+    if MULTIPLIES_BY_HALVES {
+        return product_by_halves(a, b);
+    }
+    i64::from(a.0).wrapping_mul(i64::from(b.0))
+}
+
+/// The whole product from 32-bit products of half words, a third of the library function's instructions; if only its
+/// upper word is used, the compiler leaves the lower one out.
+#[doc(hidden)]
+#[inline(always)]
+#[must_use]
+pub fn product_by_halves(a: Word, b: Word) -> i64 {
+    let ([a_upper, a_lower], [b_upper, b_lower]) = (halves(a), halves(b));
+    let carried = (a_lower * b_lower).0 as u32 >> 16;
+    let crossed = a_upper * b_lower + carried as i32;
+    let [carried, rest] = halves(crossed);
+    let upper = a_upper * b_upper + carried + ((a_lower * b_upper + rest) >> 16);
+    i64::from(upper.0) << 32 | i64::from((a * b).0 as u32)
+}
+
+/// Upper half, signed, and lower half.
+#[inline(always)]
+fn halves(word: Word) -> [Word; 2] {
+    [word >> 16, Word(word.0 & 0xFFFF)]
+}
+
 /// `floor((coefficient signal + 2^(shift-1)) / 2^shift)`: rounded half up. `shift` is 1 to 62.
 #[inline(always)]
 #[must_use]
@@ -20,7 +52,7 @@ pub fn mul_round(coefficient: Word, signal: Word, shift: u32) -> Word {
     if cfg!(target_arch = "riscv32") {
         return mul_round_without_carry(coefficient, signal, shift);
     }
-    let product = i64::from(coefficient.0).wrapping_mul(i64::from(signal.0));
+    let product = product(coefficient, signal);
     let half = 1_i64.wrapping_shl(shift.wrapping_sub(1));
     Word(product.wrapping_add(half).wrapping_shr(shift) as i32)
 }
@@ -53,25 +85,25 @@ pub fn mul_round_narrow(coefficient: Word, signal: Word, shift: u32) -> Word {
 #[inline(always)]
 #[must_use]
 pub fn mul_floor(a: Word, b: Word, shift: u32) -> Word {
-    let product = i64::from(a.0).wrapping_mul(i64::from(b.0));
-    Word(product.wrapping_shr(shift) as i32)
+    Word(product(a, b).wrapping_shr(shift) as i32)
 }
 
 /// `floor((a b + c d) / 2^shift)` for a sum that fits 64 bits: depends on the sum only.
 #[inline(always)]
 #[must_use]
 pub fn mul_add_floor(a: Word, b: Word, c: Word, d: Word, shift: u32) -> Word {
-    let first = i64::from(a.0).wrapping_mul(i64::from(b.0));
-    let second = i64::from(c.0).wrapping_mul(i64::from(d.0));
-    Word(first.wrapping_add(second).wrapping_shr(shift) as i32)
+    Word(
+        product(a, b)
+            .wrapping_add(product(c, d))
+            .wrapping_shr(shift) as i32,
+    )
 }
 
 /// `min(a b, limit)` for non-negative factors; the product may exceed the word.
 #[inline(always)]
 #[must_use]
 pub fn mul_limited(a: Word, b: Word, limit: Word) -> Word {
-    let product = i64::from(a.0).wrapping_mul(i64::from(b.0));
-    Word(product.min(i64::from(limit.0)) as i32)
+    Word(product(a, b).min(i64::from(limit.0)) as i32)
 }
 
 /// `min(floor(numerator 2^shift / denominator), limit)`, numerator and limit not negative,
@@ -162,7 +194,20 @@ pub fn turn_over(ticks: Word) -> Word {
 #[inline(always)]
 #[must_use]
 pub fn angle_index(angle: Word, segments: u32) -> Word {
+    if MULTIPLIES_BY_HALVES {
+        return angle_index_by_halves(angle, segments);
+    }
     Word(((angle.0 as u32 as u64).wrapping_mul(segments as u64) >> 32) as i32)
+}
+
+/// [`angle_index`] from products of half words.
+#[doc(hidden)]
+#[inline(always)]
+#[must_use]
+pub fn angle_index_by_halves(angle: Word, segments: u32) -> Word {
+    let (upper, lower) = (angle.0 as u32 >> 16, angle.0 as u32 & 0xFFFF);
+    let carried = lower.wrapping_mul(segments) >> 16;
+    Word((upper.wrapping_mul(segments).wrapping_add(carried) >> 16) as i32)
 }
 
 /// Position within that part from its middle; its width is 2^32. `segments` is 1 to 65536.

@@ -6,9 +6,9 @@
 )]
 
 use hexagen::arith::{
-    Word, angle_fraction, angle_index, divide, divide_by_digits, divide_narrow, lookup,
-    mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry,
-    select, turn_over,
+    Word, angle_fraction, angle_index, angle_index_by_halves, divide, divide_by_digits,
+    divide_narrow, lookup, mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow,
+    mul_round_without_carry, product_by_halves, select, turn_over,
 };
 use hexagen_codegen::ir::{
     Expr, Interval, Lut, Machine, Named, Output, ProgramBuilder, mul_add_floor as sum_of_products,
@@ -84,6 +84,11 @@ proptest! {
                 prop_assert_eq!(mul_round_without_carry(Word(c), Word(x), shift).0, exact);
             }
         }
+    }
+
+    #[test]
+    fn products_by_halves(a in factor(), b in factor()) {
+        prop_assert_eq!(product_by_halves(Word(a), Word(b)), i64::from(a) * i64::from(b));
     }
 
     #[test]
@@ -188,6 +193,7 @@ proptest! {
         let sum = interpreted(&full, &[theta, other], &[0], |x, _| x[0].angle_add(x[1]));
         let difference = interpreted(&full, &[theta, other], &[0], |x, _| x[0].angle_sub(x[1]));
         prop_assert_eq!(angle_index(Word(theta), segments).0, index);
+        prop_assert_eq!(angle_index_by_halves(Word(theta), segments).0, index);
         prop_assert_eq!(angle_fraction(Word(theta), segments).0, fraction);
         prop_assert_eq!((Word(theta) + Word(other)).0, sum);
         prop_assert_eq!((Word(theta) - Word(other)).0, difference);

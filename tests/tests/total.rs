@@ -2,9 +2,9 @@
 //! The crate is built with overflow checks.
 
 use hexagen::arith::{
-    Word, angle_fraction, angle_index, divide, divide_by_digits, divide_narrow, lookup,
-    mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow, mul_round_without_carry,
-    row, select, turn_over,
+    Word, angle_fraction, angle_index, angle_index_by_halves, divide, divide_by_digits,
+    divide_narrow, lookup, mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow,
+    mul_round_without_carry, product_by_halves, row, select, turn_over,
 };
 use hexagen::fixed::types::{I8F24, I16F16};
 use hexagen::{
@@ -275,11 +275,13 @@ proptest! {
             divide_narrow(a, b, c, bits),
             turn_over(a),
             angle_index(a, bits),
+            angle_index_by_halves(a, bits),
             angle_fraction(a, bits),
             lookup(&[0_i8, 1, 2, 3], a),
             Word::from(*row(&[0_i16; 8], a)),
             select(a < b, c, d),
         ]);
+        black_box(product_by_halves(a, b));
         black_box([a + b, a - b, a * b, -a, a << bits, a >> bits, a.abs(), a.min(b), a.max(b)]);
         black_box([a.lesser(b), a.greater(b), a.clamp(b, c), Word::from(a.to_u16())]);
         black_box(a.exceeds(b));

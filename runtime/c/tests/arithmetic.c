@@ -109,6 +109,8 @@ int main(void)
             EXPECT(mul_round_narrow(x, y, shift),
                 over(product + power(shift - 1U), power(shift)));
         }
+        EXPECT(upper_by_halves(x, y), over(product, TURN));
+        EXPECT(product(x, y), product);
         shift = (uint16_t)(1U + bits() % 62U);
         if (fits(over(product, power(shift)))) {
             EXPECT(mul_floor(x, y, shift), over(product, power(shift)));
@@ -160,6 +162,7 @@ int main(void)
             const uint32_t segments = 1U + bits() % 65536U;
             const wide turns = (wide)(uint32_t)w * segments;
             EXPECT(angle_index(w, segments), turns / TURN);
+            EXPECT(angle_index_by_halves(w, segments), turns / TURN);
             EXPECT(angle_fraction(w, segments), turns % TURN - TURN / 2);
         }
     }
