@@ -626,8 +626,9 @@ impl Ideal {
             return 1.0;
         }
         let timing = &self.state.timing;
-        let change = timing.shortened() / timing.rev.max(self.clock.rev_min);
-        1.0 + RISE * change.clamp(-GREATEST_CHANGE, GREATEST_CHANGE)
+        let most = GREATEST_CHANGE * timing.rev;
+        let change = timing.shortened().clamp(-most, most);
+        1.0 + RISE * change / timing.rev.max(self.clock.rev_min)
     }
 
     /// Angle at the sample and angle per period (radians), and the sector with its advance.

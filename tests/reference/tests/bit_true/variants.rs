@@ -323,6 +323,9 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let shift = |value: f64| (30 - value.log2().ceil() as i32).clamp(0, 62);
     let e_max = 2.0 * motor.emf_constant * inverter.omega_max / w * scale;
     let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w * 1.6;
+    let slowest = 6.0 * f64::from(inverter.age_max);
+    let rise_shift = (slowest / f64::from(inverter.rev_min)).log2().floor() + 2.0;
+    let rise = 7.0 / 3.0 * (rise_shift.max(0.0) - 3.0).exp2();
     let peak = 1.6 * motor.torque_constant / motor.emf_constant;
     let entries = [
         ("current", f_i),
@@ -349,6 +352,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
             shift(scale * gain / w / motor.torque_constant / 65_536.0),
         ),
         ("k_advance", shift(options.advance.max(1.0))),
+        ("k_rise", shift(rise)),
         ("k_bus", shift(0.1 / w * scale)),
         ("k_braking", shift(inverter.max_current * gain / 130.0)),
         ("k_motoring", shift(inverter.max_current * gain / 70.0)),
