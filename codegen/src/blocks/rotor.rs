@@ -216,7 +216,7 @@ fn tells_rise(spec: &Spec) -> bool {
 const RISE: f64 = 7.0 / 3.0;
 /// The change of half a turn's time is limited to 2^-3 of a turn's.
 const CHANGE_BITS: u32 = 3;
-/// Limit of [`Edges::rise`].
+/// Limit of [`Edges::rise`], by that of the change.
 const GREATEST_RISE: f64 = RISE / 8.0;
 
 /// Rise of the speed from the last turn to the coming sector, by the change of half a turn's time; added to the
@@ -227,10 +227,12 @@ fn speed_rise<'b>(
     [rev, rate]: [Expr<'b>; 2],
 ) -> Expr<'b> {
     let [last, middle, first, third, second, oldest] = intervals;
-    // The least shift with which the product of all changes and all rates fits a word.
+    // The least shift with which the product of all changes and all rates fits a word, and its limit, too.
     let turn = f64::from(l.spec.age_max()) * 6.0;
     let greatest = turn * (32_f64.exp2() / f64::from(l.spec.rev_min()));
-    let shift = (greatest.log2().floor() as u32 + 1).saturating_sub(31);
+    let shift = (greatest.log2().floor() as u32 + 1)
+        .saturating_sub(31)
+        .max(2);
     let limit = 1 << (32 - shift);
     let bits = f64::from(shift) - f64::from(CHANGE_BITS);
     let factor = RISE * bits.exp2();

@@ -195,7 +195,8 @@ fn check_experiment(drives: &[Listed]) -> Result<(), BenchError> {
     for (symbol, variant) in counted_readings() {
         let listed = drives.iter().find(|drive| drive.symbol == symbol);
         let listed = listed.ok_or_else(|| BenchError::Failed(format!("{symbol} is missing")))?;
-        let [run, counted] = [paper_drive(variant)?, drive_of(listed)?];
+        let run = paper_drive(variant)?;
+        let counted = drive_of(listed)?;
         if run.spec != counted.spec {
             return Err(BenchError::Failed(format!(
                 "{symbol} is not `{variant}`, which `hexagen reproduce` runs"

@@ -325,7 +325,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let linkage = motor.emf_constant / (f64::from(motor.pole_pairs) * inverter.t_s) / w * 1.6;
     let slowest = 6.0 * f64::from(inverter.age_max);
     let rise_shift = (slowest / f64::from(inverter.rev_min)).log2().floor() + 2.0;
-    let rise = 7.0 / 3.0 * (rise_shift.max(0.0) - 3.0).exp2();
+    let rise = 7.0 / 3.0 * (rise_shift.max(2.0) - 3.0).exp2();
     let peak = 1.6 * motor.torque_constant / motor.emf_constant;
     let entries = [
         ("current", f_i),

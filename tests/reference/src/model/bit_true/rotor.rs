@@ -44,7 +44,7 @@ pub struct Rise<W> {
 impl<W: Word> Rise<W> {
     pub fn new(scale: &Scale, clock: &HallClock) -> Result<Self, Error> {
         let greatest = 6.0 * clock.age_max * (pow2(32) / clock.rev_min);
-        let shift = (greatest.log2().floor() - 30.0).max(0.0);
+        let shift = (greatest.log2().floor() - 30.0).max(2.0);
         Ok(Self {
             change: Shift::new(shift as u32),
             limit: pow2(32 - shift as i32),
