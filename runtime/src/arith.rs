@@ -13,7 +13,7 @@
 
 pub use crate::word::Word;
 
-/// An ARMv6-M core, which has neither a 64-bit product nor, by which it is told, compare-and-swap.
+/// Whether the core is an ARMv6-M one, which has no 64-bit product. No other Arm core without compare-and-swap is a target.
 const MULTIPLIES_BY_HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// The whole product.

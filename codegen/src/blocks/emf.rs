@@ -262,7 +262,8 @@ pub fn proportional_shape<'b>(l: &Lowering<'b>, rotor: &Rotor<'b>, delay: u32) -
 /// The words with as many zero bits behind them, at most 32 less those of a shape, as still fit, and the shift that takes
 /// both away: with all of them a product with a shape is an upper word. The words have these names.
 pub fn lifted<'b, const N: usize>(words: [(&str, Expr<'b>); N]) -> ([Expr<'b>; N], u32) {
-    let spare = words.map(|(_, word)| 32 - word.interval().bits());
+    // At a scale that is tried and rejected a word may be longer.
+    let spare = words.map(|(_, word)| 32_u32.saturating_sub(word.interval().bits()));
     let bits = spare.into_iter().fold(32 - SHAPE_BITS, u32::min);
     let lifted = words.map(|(name, word)| match bits {
         0 => word,

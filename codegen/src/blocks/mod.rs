@@ -18,6 +18,7 @@ pub mod set_point;
 mod slew;
 mod speed;
 mod speed_ramp;
+mod speed_rise;
 
 pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;

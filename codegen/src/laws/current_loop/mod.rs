@@ -146,6 +146,14 @@ pub fn kept<'b>(words: [Memory<'b>; 2], values: Phases<'b>) -> [(Memory<'b>, Exp
     [(words[0], values.a()), (words[1], values.b())]
 }
 
+/// Names the voltage less the EMF.
+fn net_voltage<'b>(volts: Option<Phases<'b>>, e: Option<Phases<'b>>) -> Option<Phases<'b>> {
+    named! {
+        let net_now = volts? - e?;
+    }
+    Some(net_now)
+}
+
 /// Names the voltage of phases a and b before the limit, and states its error bound.
 pub fn unlimited_voltage<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> {
     let doc = "Phase voltage before the limit";
@@ -159,12 +167,7 @@ pub fn unlimited_voltage<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> 
 impl<'b> Front<'b> {
     /// Voltage less EMF of the period that begins now, with delay 1; added to the open stage.
     pub fn net_now(&self) -> Option<Phases<'b>> {
-        self.net.or_else(|| {
-            named! {
-                let net_now = self.now? - self.e_now?;
-            }
-            Some(net_now)
-        })
+        self.net.or_else(|| net_voltage(self.now, self.e_now))
     }
 }
 
@@ -211,10 +214,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let now = commanded.or_else(|| self.applied_now(&words, currents, e_now, &off_leg));
         let net = words.net_next.map(read).or_else(|| {
             words.net_prev?;
-            named! {
-                let net_now = now? - e_now?;
-            }
-            Some(net_now)
+            net_voltage(now, e_now)
         });
         Front {
             words,

@@ -117,7 +117,7 @@ fn a_fault_planted_in_emitted_c_is_found() {
     let said = run_with(&arguments, "CC", compiler.as_os_str());
     assert_eq!(said.code, 1, "{said:?}");
     assert_eq!(said.json_whatever_the_code()["passed"], false);
-    for text in ["differs", "adc_a =", "v_a_cmd", "<--"] {
+    for text in ["differs", "adc_a =", "net_a_next", "<--"] {
         assert!(
             said.stderr.contains(text),
             "no `{text}` in\n{}",

@@ -199,17 +199,21 @@ pub fn reference_gain(spec: &Spec) -> f64 {
 /// # Errors
 /// When the bus is inconsistent.
 pub fn emf_error_limit(spec: &Spec) -> Result<f64, Error> {
-    let inverter = &spec.inverter;
-    let count = inverter.v_bus / f64::from(inverter.timer_period);
-    Ok((inverter.v_bus_max()? / count / 2.0).log2().ceil().exp2())
+    Ok(saturated(spec, spec.inverter.v_bus_max()? / 2.0))
 }
 
 /// Largest plausible EMF, timer counts of voltage: a power of two.
 pub fn emf_limit(spec: &Spec) -> f64 {
-    let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let count = inverter.v_bus / f64::from(inverter.timer_period);
-    let fastest = 1.5 * motor.emf_constant * inverter.omega_max;
-    (fastest / count).log2().ceil().exp2()
+    saturated(
+        spec,
+        1.5 * spec.motor.emf_constant * spec.inverter.omega_max,
+    )
+}
+
+/// Volts as timer counts, up to the next power of two.
+fn saturated(spec: &Spec, volts: f64) -> f64 {
+    let count = spec.inverter.v_bus / f64::from(spec.inverter.timer_period);
+    (volts / count).log2().ceil().exp2()
 }
 
 /// Residual allowed by the residual watch: volt always, volt per ampere of the set-point, volt per

@@ -5,7 +5,8 @@ use super::state::State;
 use crate::exact::{Word, both, halve, within, word};
 use crate::model::sector::OUT_PHASE;
 
-/// Voltage of phases a, b less that across inductance and resistance in the period that ends with the currents `i`.
+/// `volts` of phases a, b less the drop across inductance and resistance, of a period that began with the currents
+/// `i_prev` and ends with `i`.
 #[inline]
 fn behind<W: Word>(k: &Constants<W>, i_prev: [W; 2], i: [W; 2], volts: [W; 2]) -> [W; 2] {
     both(|x| {
