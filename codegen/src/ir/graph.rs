@@ -50,7 +50,7 @@ pub struct Table {
     pub doc: Vec<String>,
 }
 
-/// A periodic function that is approximated segment by segment.
+/// A periodic function that is approximated segment by segment; the segments meet at their borders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Periodic {
     /// Largest distance of the approximation, words.
@@ -60,16 +60,12 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// Error of the approximation at an inexact angle.
+    /// Error of the approximation at an inexact angle. The approximation is continuous, so it differs from itself at the
+    /// exact angle by its slope.
     pub fn error(self, angle: ErrorInterval) -> ErrorInterval {
         let turn = f64::from(32).exp2();
-        let moved = if angle.is_zero() {
-            0.0
-        } else {
-            self.misfit.value()
-        };
         ErrorInterval::symmetric(
-            self.misfit.value() + moved + self.slope.value() * angle.magnitude() / turn,
+            self.misfit.value() + self.slope.value() * angle.magnitude() / turn,
         )
     }
 }
