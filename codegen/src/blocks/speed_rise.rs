@@ -2,7 +2,7 @@
 
 use super::Lowering;
 use crate::diagnostics::significant;
-use crate::ir::{Expr, Named, named};
+use crate::ir::{Exact, Expr, Named, Real, named};
 use crate::spec::{HallCapture, Spec};
 
 /// Whether the intervals tell the speed's rise: between opposite edges, which are a sensor's own, the rotor
@@ -45,10 +45,12 @@ pub(super) fn speed_rise<'b>(
         "Rise of the speed to the coming sector, over the change of half a turn's time over a turn's.",
         &format!("7/3 2^{bits} = {}", significant(factor)),
     );
+    let doc = "Half a unit of the rate of a turn, which is rounded down, in its double.";
+    let half = l.rounded_number("rate_half", 1, Exact::Number(Real::of(0.0)), doc);
     named! {
         let shortened = (third + second + oldest) - (last + middle + first);
         let eighths = (shortened << CHANGE_BITS).within(rev);
-        let change = eighths.mul_floor(rate, shift).clamp(-limit, limit);
+        let change = eighths.mul_floor((rate << 1) + half, shift + 1).clamp(-limit, limit);
         let rise_seen = k_rise * change;
     }
     rise_seen

@@ -34,7 +34,7 @@ pub struct Angle<W: Word> {
 /// Rise of the speed from the last turn to the coming sector.
 #[derive(Clone, Copy, Debug)]
 pub struct Rise<W> {
-    /// Of eight times the change of half a turn's time, with S bits less.
+    /// Of eight times the change of half a turn's time and twice the rate, with S bits less.
     change: Shift,
     limit: f64,
     factor: Coefficient<W>,
@@ -46,7 +46,7 @@ impl<W: Word> Rise<W> {
         let greatest = 6.0 * clock.age_max * (pow2(32) / clock.rev_min);
         let shift = (greatest.log2().floor() - 30.0).max(2.0);
         Ok(Self {
-            change: Shift::new(shift as u32),
+            change: Shift::new(shift as u32 + 1),
             limit: pow2(32 - shift as i32),
             factor: scale.coefficient("k_rise", RISE * pow2(shift as i32 - 3))?,
             whole: Shift::new(32),
@@ -62,7 +62,7 @@ impl<W: Word> Rise<W> {
     #[inline]
     fn at(&self, timing: &HallTiming<W>, rate: W) -> W {
         let eighths = within(timing.shortened() * 8.0, -timing.rev, timing.rev);
-        let change = self.change.floor_product(eighths, rate);
+        let change = self.change.floor_product(eighths, rate * 2.0 + 1.0);
         self.factor.mul(within(change, -self.limit, self.limit))
     }
 }
