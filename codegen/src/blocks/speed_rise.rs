@@ -2,7 +2,7 @@
 
 use super::Lowering;
 use crate::diagnostics::significant;
-use crate::ir::{Exact, Expr, Named, Real, named};
+use crate::ir::{Exact, Expr, Real, named};
 use crate::spec::{HallCapture, Spec};
 
 /// Whether the intervals tell the speed's rise: between opposite edges, which are a sensor's own, the rotor
