@@ -47,8 +47,10 @@ pub(super) fn speed_rise<'b>(
     );
     let doc = "Half a unit of the rate of a turn, which is rounded down, in its double.";
     let half = l.rounded_number("rate_half", 1, Exact::Number(Real::of(0.0)), doc);
+    // At constant speed the counted half turns differ by up to a tick, which would be heard in the EMF.
     named! {
-        let shortened = (third + second + oldest) - (last + middle + first);
+        let difference = (third + second + oldest) - (last + middle + first);
+        let shortened = difference - difference.clamp(-1, 1);
         let eighths = (shortened << CHANGE_BITS).within(rev);
         let change = eighths.mul_floor((rate << 1) + half, shift + 1).clamp(-limit, limit);
         let rise_seen = k_rise * change;

@@ -104,11 +104,13 @@ impl<W: Word> HallTiming<W> {
         if self.edges == 2 { 2.0 } else { 1.0 }
     }
 
-    /// By how many ticks the last half turn was shorter than the one before.
+    /// By how many ticks the last half turn was shorter than the one before, less the tick that both may differ by at constant
+    /// speed.
     #[inline]
     pub fn shortened(&self) -> W {
         let [last, middle, first, third, second, oldest] = self.intervals;
-        (third + second + oldest) - (last + middle + first)
+        let difference = (third + second + oldest) - (last + middle + first);
+        difference - within(difference, -1.0, 1.0)
     }
 
     /// Whether the rotor turns too fast.
