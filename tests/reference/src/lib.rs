@@ -20,7 +20,9 @@ pub use discrete_phase::DiscretePhase;
 pub use emf_shape::EmfShape;
 pub use error::Error;
 pub use formats::FormatTable;
-pub use model::{BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Stop, Trace, Uniform};
+pub use model::{
+    BitTrue, Course, Duties, Ideal, Mode, PhysicalState, Reach, Stop, Trace, Uniform, sixths,
+};
 pub use spec::{
     Bus, BusSense, Candidates, CommonMode, CommutationEnd, Controller, Discretisation,
     EmfShapeKind, EmfSource, FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg,

@@ -22,3 +22,4 @@ pub use ideal::{Duties, Ideal};
 pub use supervision::{Mode, Stop};
 pub use trace::{PhysicalState, Reach, Trace};
 pub use uniform::Uniform;
+pub use vectors::sixths;

@@ -4,7 +4,9 @@
 use crate::variants::{self, Variant};
 use hexagen::{LegState, Sample};
 use hexagen_reference::verify::{Action, Context, Stimulus};
-use hexagen_reference::{BitTrue, Controller, DiscretePhase, Ideal, Mode, OffLeg, PhysicalState};
+use hexagen_reference::{
+    BitTrue, Controller, DiscretePhase, Ideal, Mode, OffLeg, PhysicalState, Switch, Trace, sixths,
+};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
 const STEPS: u64 = 1000;
@@ -158,7 +160,8 @@ fn compare(
         // Two vectors at nearly the same distance. With an off leg at a rail, two numbers name one
         // voltage; where the leg sits may be decided otherwise, too.
         let v_bus = variant.spec.inverter.v_bus_max().expect("a bus");
-        let gap = (distance(a.u_unsat, a.u) - distance(a.u_unsat, b.u)).abs();
+        let [of_a, of_b] = [a, &b].map(|trace| compared_voltage(variant, trace));
+        let gap = (distance(a.u_unsat, of_a) - distance(a.u_unsat, of_b)).abs();
         let near_tie = gap < 2e-3 * v_bus * (v_bus + a.u_unsat[0].abs() + a.u_unsat[1].abs());
         if near_tie {
             return;
@@ -188,6 +191,24 @@ fn compare(
         } else {
             worst.decided_otherwise += 1;
         }
+    }
+}
+
+/// The voltage by which a vector was chosen. A divided period has a partner's, too: on a fixed bus, where no diode takes
+/// part, it is that of the whole vector.
+fn compared_voltage(variant: &Variant, trace: &Trace) -> [f64; 2] {
+    let inverter = &variant.spec.inverter;
+    let is_fixed = inverter.bus_sense().is_ok_and(|bus| bus.is_none());
+    match &variant.spec.controller {
+        Controller::FcsMpc(options)
+            if is_fixed
+                && options.off_leg == OffLeg::Nominal
+                && options.modulated == Switch::On =>
+        {
+            let [a, b, _] = sixths(trace.vector).map(|part| part * inverter.v_bus / 6.0);
+            [a, b]
+        }
+        _ => trace.u,
     }
 }
 
