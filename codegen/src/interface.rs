@@ -171,6 +171,17 @@ pub struct Limits {
     pub bus_counts: [u16; 2],
     /// The current sensors.
     pub sensors: Sensors,
+    /// The angle sensor; none with Hall sensors.
+    pub angle: Option<AngleSensor>,
+}
+
+/// What the angle of a sample has to do with the electrical angle; see the runtime's `AngleSensor`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AngleSensor {
+    /// Electrical turns in a turn of the sensor, signed.
+    pub turns: i32,
+    /// Electrical angle at the sensor's angle 0, 2^32 a turn.
+    pub offset: u32,
 }
 
 /// The current sensors.

@@ -378,6 +378,7 @@ static hexagen_rested go_without(hexagen_supervisor *supervisor, const hexagen_l
     checked->i_b = current_within(limits, checked->i_b);
     checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
+    checked->angle = hexagen_wrap(sample->angle);
     fault = find_fault(supervisor, limits, sample, is_sound || is_bridged, first, second);
     if (fault != HEXAGEN_FAULT_NONE) {
         hexagen_trip(supervisor, fault);

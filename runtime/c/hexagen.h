@@ -42,7 +42,7 @@ typedef struct {
     uint16_t hall;
     /** Timer ticks from the last Hall edge to this sample, stopping at 65535. */
     uint16_t hall_ticks;
-    /** Electrical angle, 2^32 a turn; 0 where there is a Hall code. */
+    /** Angle of a sensor, 2^32 a turn; 0 where there is a Hall code. */
     uint32_t angle;
 } hexagen_sample;
 
@@ -63,14 +63,34 @@ static inline hexagen_sample hexagen_with_hall(uint16_t adc_a, uint16_t adc_b, u
 }
 
 /**
- * ADC counts of phases a and b, and an electrical angle, 2^32 per turn, 0 where the EMF of phase a
- * rises through 0. It has no Hall code: a drive that needs one trips.
+ * ADC counts of phases a and b, and the angle of a sensor, 2^32 per turn of it, for drives with
+ * `rotor: angle`; their specification says what it has to do with the electrical angle. It has no
+ * Hall code: a drive that needs one trips.
  */
 static inline hexagen_sample hexagen_with_angle(uint16_t adc_a, uint16_t adc_b, uint32_t angle)
 {
     hexagen_sample sample = hexagen_with_hall(adc_a, adc_b, 0);
     sample.angle = angle;
     return sample;
+}
+
+/**
+ * The sample with the electrical angle, given the electrical turns in a turn of the sensor, negative
+ * where its angle falls in forward rotation, and the electrical angle at its angle 0; and with the
+ * Hall code that sensors would show there, to a resolution of 2^-16 of a turn. A sample with a Hall
+ * code has no angle: it gets a code that no sensors give, and trips the drive.
+ */
+static inline hexagen_sample hexagen_resolve_angle(
+    const hexagen_sample *sample, int32_t turns, uint32_t offset)
+{
+    /* Hall codes of sectors 1 to 6, four bits each; sector 1 begins half a sector before angle 0. */
+    const uint32_t codes = UINT32_C(0x00326451);
+    hexagen_sample resolved = *sample;
+    uint32_t sector;
+    resolved.angle = sample->angle * (uint32_t)turns + offset;
+    sector = (((resolved.angle + UINT32_C(357913942)) >> 16) * 6U) >> 16;
+    resolved.hall = sample->hall == 0U ? (uint16_t)((codes >> (4U * sector)) & 7U) : 7U;
+    return resolved;
 }
 
 /**
@@ -697,6 +717,8 @@ typedef struct {
     int32_t hall;
     /** Ticks since the last Hall edge, 0 to 65535. */
     int32_t hall_ticks;
+    /** Electrical angle, 2^32 a turn; of a drive with Hall sensors without meaning. */
+    int32_t angle;
 } hexagen_checked;
 
 /** The count of a sensor, 0 to 2 for the first to the third. */
@@ -945,6 +967,7 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
     hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
     checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
+    checked->angle = hexagen_wrap(sample->angle);
     return supervisor->mode == HEXAGEN_MODE_RUN && !hexagen_has_end(supervisor, limits, sample)
         && is_sound && !hexagen_is_over(limits, first, second) && !is_sum_off && !is_stalled;
 }

@@ -5,7 +5,7 @@
 
 use crate::arith::Word;
 use crate::bus::Bus;
-use crate::{Checked, Command, Format, Limits, Places, Sensors};
+use crate::{AngleSensor, Checked, Command, Format, Limits, Places, Sensors};
 
 /// State of a law: the words kept from one control period to the next.
 ///
@@ -72,6 +72,8 @@ pub trait Control: Sized + 'static {
     const LIMITS: Limits;
     /// The current sensors. The macro sets it unless they are alike and in phases a and b.
     const SENSORS: Sensors = Sensors::AB;
+    /// The angle sensor of a drive with `rotor: angle`; none with Hall sensors.
+    const ANGLE: Option<AngleSensor> = None;
     /// Units of an [`Observation`] and of commands.
     const UNITS: Units;
     /// Initial set-point word: 0, or with `speed_loop: on` the greatest current.

@@ -214,7 +214,8 @@ impl<C: Control> ControlLoop<'_, C> {
         }
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
-        let checked = match core.supervisor.check(limits, sensors, sample, is_demanded) {
+        let seen = &seen::<C>(sample);
+        let checked = match core.supervisor.check(limits, sensors, seen, is_demanded) {
             Some(checked) => checked,
             None => match rest(set_point, core, *sample) {
                 ControlFlow::Continue(checked) => checked,
@@ -323,7 +324,7 @@ fn rest<C: Control>(
     sample: Sample,
 ) -> ControlFlow<C::Command, Checked> {
     let was_tripped = core.supervisor.fault();
-    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, &sample);
+    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, &seen::<C>(&sample));
     if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
         keep(set_point, core, sample, fault);
     }
@@ -339,6 +340,15 @@ fn rest<C: Control>(
             C::rest(&mut core.law, &checked, rotor);
             ControlFlow::Break(C::Command::at_rest(state))
         }
+    }
+}
+
+/// The sample as the supervisor and the law see it.
+#[inline]
+fn seen<C: Control>(sample: &Sample) -> Sample {
+    match C::ANGLE {
+        None => *sample,
+        Some(sensor) => sensor.resolve(sample),
     }
 }
 

@@ -11,6 +11,7 @@
 //! - [`errata`]: errors of the paper.
 #![no_std]
 
+mod angle;
 pub mod arith;
 mod bus;
 mod bus_watch;
@@ -51,6 +52,7 @@ mod supervisor;
 mod trip;
 mod word;
 
+pub use angle::AngleSensor;
 pub use bus::{Bus, FixedBus, ToldBus};
 pub use command::{Command, Intervals, LegState, Legs};
 pub use constants::pairs_from_bits;

@@ -46,9 +46,9 @@ impl Sample {
         }
     }
 
-    /// The same with an electrical angle in place of a Hall code, 2^32 per turn, 0 where the EMF of
-    /// phase a rises through 0. It has no Hall code: a drive that needs one, as all do so far,
-    /// trips.
+    /// The same with the angle of a sensor in place of a Hall code, 2^32 per turn of it, for drives with
+    /// `rotor: angle`; their specification says what it has to do with the electrical angle. An angle
+    /// of n bits is shifted left by 32 - n. It has no Hall code: a drive that needs one trips.
     #[inline]
     #[must_use]
     pub const fn with_angle([adc_a, adc_b]: [u16; 2], angle: u32) -> Self {
@@ -106,7 +106,7 @@ impl Sample {
         self.hall_ticks
     }
 
-    /// The electrical angle, 2^32 per turn; 0 if the sample has a Hall code.
+    /// The sensor's angle, 2^32 per turn; 0 if the sample has a Hall code.
     #[inline]
     #[must_use]
     pub const fn angle(&self) -> u32 {
@@ -122,6 +122,7 @@ pub struct Checked {
     pub(crate) i: [Word; 2],
     pub(crate) hall: Word,
     pub(crate) hall_ticks: Word,
+    pub(crate) angle: Word,
 }
 
 impl Checked {
@@ -139,7 +140,7 @@ impl Checked {
         self.i[1]
     }
 
-    /// The Hall code, 1 to 6; 0 only at rest, if it was invalid.
+    /// The Hall code, 1 to 6, of an angle that of its sector; 0 only at rest, if it was invalid.
     #[inline]
     #[must_use]
     pub const fn hall(&self) -> Word {
@@ -151,5 +152,13 @@ impl Checked {
     #[must_use]
     pub const fn hall_ticks(&self) -> Word {
         self.hall_ticks
+    }
+
+    /// Electrical angle, bits of a word with 2^32 per turn, 0 where the EMF of phase a rises through 0;
+    /// of a drive with Hall sensors without meaning.
+    #[inline]
+    #[must_use]
+    pub const fn angle(&self) -> Word {
+        self.angle
     }
 }

@@ -674,6 +674,7 @@ impl Supervisor {
             i: sensors.phases.a_and_b(i, third_of(i)),
             hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
+            angle: Word(sample.angle as i32),
         })
     }
 
@@ -844,6 +845,7 @@ impl Supervisor {
             i: [within(i_a), within(i_b)],
             hall: hall.into(),
             hall_ticks: sample.hall_ticks.into(),
+            angle: Word(sample.angle as i32),
         };
         let [first, second, third] = adc;
         let found = if self.is_at_end(limits, sensors, Unread::First, first)

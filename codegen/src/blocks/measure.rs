@@ -2,7 +2,7 @@
 
 use super::Lowering;
 use crate::ir::{Expr, Flag, Interval, Lut, Memory, Phases, named};
-use crate::spec::HallCapture;
+use crate::spec::RotorSensing;
 
 /// A sample that the supervisor has checked.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +13,8 @@ pub struct Sample<'b> {
     pub hall: Expr<'b>,
     /// Ticks since the last Hall edge; with a capture timer only.
     pub hall_ticks: Option<Expr<'b>>,
+    /// Electrical angle; with an angle sensor only.
+    pub angle: Option<Expr<'b>>,
 }
 
 /// Sector and edge of this sample.
@@ -37,16 +39,22 @@ pub fn sample<'b>(l: &Lowering<'b>) -> Sample<'b> {
     let codes = Interval::new(0, 6);
     let doc = "Hall code, Ha in bit 2; 0 in a period at rest without a valid code.";
     let hall = l.b.input("hall", codes, doc);
-    let is_timed = matches!(l.spec.inverter.hall_capture, HallCapture::Timer { .. });
+    let is_timed = matches!(l.spec.inverter.rotor_sensing, RotorSensing::TimedHalls { .. });
     let hall_ticks = is_timed.then(|| {
         let ticks = Interval::new(0, i64::from(u16::MAX));
         let doc = "Ticks of a clock of `HALL_TIMER_HZ` from the last Hall edge to this sample, at most 65535.";
         l.b.input("hall_ticks", ticks, doc)
     });
+    let angle = l.spec.angle_sensor().map(|_| {
+        let angles = Interval::new(i64::from(i32::MIN), i64::from(i32::MAX));
+        let doc = "Electrical angle, 2^32 a turn.";
+        l.b.input("angle", angles, doc)
+    });
     Sample {
         currents,
         hall,
         hall_ticks,
+        angle,
     }
 }
 

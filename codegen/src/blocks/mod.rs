@@ -3,6 +3,7 @@
 //! Each file builds one or two stages of a step (semantics pages under `laws`); a controller's own
 //! folder combines them. Real numbers end here: the results are integers with documentation.
 
+mod angle;
 mod bus_current;
 mod common_mode;
 mod commutation;
@@ -20,6 +21,7 @@ mod speed;
 mod speed_ramp;
 mod speed_rise;
 
+pub use angle::AngleWords;
 pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;
 pub use commutation::{Commutation, CommutationRule};

@@ -1,5 +1,5 @@
-//! Over-speed watch: counts the Hall edges in a row at which the last turn was too short (semantics page
-//! of predictive deadbeat, "Over-speed").
+//! Over-speed watch: counts the Hall edges in a row at which the last turn was too short, or the periods in a
+//! row whose angle per period is too large (semantics page of predictive deadbeat, "Over-speed").
 
 use super::Lowering;
 use crate::diagnostics::rpm;
@@ -8,7 +8,7 @@ use crate::ir::{Expr, Flag, Interval, Memory, named};
 /// The state word.
 pub const OVER_SPEED_COUNT: &str = "over_speed_count";
 
-/// Edges in a row that trip. A turn is the mean of six intervals, so the first and the last of seven
+/// Edges or periods in a row that trip. A turn is the mean of six intervals, so the first and the last of seven
 /// share none: a single wrong interval, also one that stands for all six, is not in all.
 pub const OVER_SPEED_EDGES: i32 = 7;
 
@@ -16,7 +16,7 @@ pub const OVER_SPEED_EDGES: i32 = 7;
 #[derive(Clone, Copy, Debug)]
 pub struct OverSpeedWatch<'b> {
     count: Memory<'b>,
-    /// Ticks of a turn at the over-speed.
+    /// Ticks of a turn at the over-speed; without effect with an angle sensor.
     turn: u32,
     /// The over-speed, mechanical rad/s.
     speed: f64,
@@ -26,7 +26,10 @@ impl<'b> OverSpeedWatch<'b> {
     /// Declares the count; `None` without an `over_speed`.
     pub fn new(l: &Lowering<'b>) -> Option<Self> {
         let (speed, turn) = (l.spec.inverter.over_speed?, l.spec.over_speed_turn()?);
-        let doc = "Hall edges in a row at which the last turn was shorter than at the over-speed.";
+        let doc = match l.spec.angle_sensor() {
+            None => "Hall edges in a row at which the last turn was shorter than at the over-speed.",
+            Some(_) => "Periods in a row in which the rotor turned faster than at the over-speed.",
+        };
         let range = Interval::new(0, i64::from(OVER_SPEED_EDGES));
         Some(Self {
             count: l.b.memory(OVER_SPEED_COUNT, 0, range, doc),
@@ -42,12 +45,20 @@ impl<'b> OverSpeedWatch<'b> {
             rpm(self.speed)
         );
         let turn = l.number("over_speed_turn", i64::from(self.turn), &doc);
+        self.counted(measured & rev.is_below(turn))
+    }
+
+    fn counted(&self, is_over: Flag<'b>) -> Expr<'b> {
         let more = (self.count.read() + 1).min(OVER_SPEED_EDGES);
-        let is_over = measured & rev.is_below(turn);
         named! {
             let over_speed_count_seen = is_over.choose(more, 0);
         }
         over_speed_count_seen
+    }
+
+    /// Counts a period, in the open stage.
+    pub fn count(&self, is_over: Flag<'b>) {
+        self.count.set(self.counted(is_over));
     }
 
     /// Joins the count of the open guarded stage and sets its state word.

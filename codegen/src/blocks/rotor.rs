@@ -9,7 +9,7 @@ use super::speed_rise::{GREATEST_RISE, risen, speed_rise, tells_rise};
 use crate::diagnostics::significant;
 use crate::interface::Rounding;
 use crate::ir::{Exact, Expr, Flag, Interval, Memory, Named, Real, named};
-use crate::spec::{HallCapture, Spec};
+use crate::spec::{RotorSensing, Spec};
 use std::f64::consts::TAU;
 
 /// A sixth of a turn: floor(2^32 / 6).
@@ -28,8 +28,16 @@ fn sixth_turn(share: f64) -> Exact {
 
 /// The mechanical speed of one word of `omega`, rad/s.
 pub(super) fn speed_word(spec: &Spec) -> f64 {
-    let tick = spec.inverter.t_s / spec.inverter.hall_capture.ticks_per_period();
+    let tick = spec.inverter.t_s / spec.inverter.rotor_sensing.ticks_per_period();
     TAU / (32_f64.exp2() * tick * f64::from(spec.motor.pole_pairs))
+}
+
+/// The greatest speed that is measured, words of `omega`.
+pub(super) fn greatest_speed(spec: &Spec) -> i64 {
+    match spec.angle_sensor() {
+        None => ((1_i64 << 32) - 1) / i64::from(spec.rev_min()),
+        Some(sensor) => i64::from(spec.greatest_turn(sensor)),
+    }
 }
 
 /// Ticks of the edge timer in a control period.
@@ -44,7 +52,7 @@ struct PeriodTicks {
 }
 
 impl PeriodTicks {
-    fn of(capture: HallCapture) -> Self {
+    fn of(capture: RotorSensing) -> Self {
         let exact = capture.ticks_per_period();
         Self {
             exact,
@@ -93,8 +101,26 @@ pub struct Rotor<'b> {
     pub step_angle: Expr<'b>,
     /// The speed is known and the angle interpolated.
     pub tracking: Flag<'b>,
+    pub(super) speed: SpeedWord<'b>,
+}
+
+/// The speed, words of [`speed_word`].
+#[derive(Clone, Copy, Debug)]
+pub(super) enum SpeedWord<'b> {
     /// Electrical angle per tick, mean of the last turn; 0 while the speed is unknown.
-    pub omega: Expr<'b>,
+    ByEdges(Expr<'b>),
+    /// Electrical angle per control period, signed.
+    ByAngles(Expr<'b>),
+}
+
+impl<'b> Rotor<'b> {
+    /// The signed speed, words of [`speed_word`].
+    pub(super) fn signed_speed(&self) -> Expr<'b> {
+        match self.speed {
+            SpeedWord::ByEdges(omega) => (self.direction * omega).named("speed"),
+            SpeedWord::ByAngles(step) => step,
+        }
+    }
 }
 
 /// Change of the sector at an edge.
@@ -194,7 +220,7 @@ fn turn<'b>(l: &Lowering<'b>, [first, others @ ..]: [Expr<'b>; 6]) -> Expr<'b> {
     let sum = others
         .into_iter()
         .fold(first, |sum, interval| sum + interval);
-    match PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest {
+    match PeriodTicks::of(l.spec.inverter.rotor_sensing).turn_rest {
         0 => sum,
         rest => {
             let doc =
@@ -208,8 +234,8 @@ impl<'b> RotorWords<'b> {
     /// Declares the rotor tracker's state words.
     pub fn new(l: &Lowering<'b>) -> Self {
         let age_max = i64::from(l.spec.age_max());
-        let rest = PeriodTicks::of(l.spec.inverter.hall_capture).turn_rest;
-        let omega_max = ((1 << 32) - 1) / i64::from(l.spec.rev_min());
+        let rest = PeriodTicks::of(l.spec.inverter.rotor_sensing).turn_rest;
+        let omega_max = greatest_speed(l.spec);
         let tells_rise = tells_rise(l.spec);
         let greatest_rise = if tells_rise { GREATEST_RISE } else { 0.0 };
         let turn_max = greatest_turn(l.spec, 1.0 + greatest_rise).ceil() as i64;
@@ -280,7 +306,7 @@ impl<'b> RotorWords<'b> {
             theta,
             step_angle: turning.step_angle,
             tracking: turning.tracking,
-            omega: turning.omega,
+            speed: SpeedWord::ByEdges(turning.omega),
         }
     }
 
@@ -291,12 +317,10 @@ impl<'b> RotorWords<'b> {
         hall: &Hall<'b>,
         hall_ticks: Option<Expr<'b>>,
     ) -> [Expr<'b>; 2] {
-        let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
-        let doc = match l.spec.inverter.hall_capture {
-            HallCapture::Sampled => "Time since the last Hall edge, in half periods.",
-            HallCapture::Timer { .. } => {
-                "Time since the last Hall edge, in ticks of the edge timer. A count that belongs to the other side of an edge than the code is rejected."
-            }
+        let ticks = PeriodTicks::of(l.spec.inverter.rotor_sensing);
+        let doc = match hall_ticks {
+            None => "Time since the last Hall edge, in half periods.",
+            Some(_) => "Time since the last Hall edge, in ticks of the edge timer. A count that belongs to the other side of an edge than the code is rejected.",
         };
         l.b.stage("age_edge", &[doc]);
         named! {
@@ -488,7 +512,7 @@ fn age<'b>(
         return hall.edge.choose(1, age_before.min(limit()));
     };
     // Code and ticks contradict each other if an edge came between their readings.
-    let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
+    let ticks = PeriodTicks::of(l.spec.inverter.rotor_sensing);
     let doc = "Ticks of two control periods: a new edge is no older.";
     let recent = l.number("ticks_recent", (2.0 * ticks.exact).floor() as i64, doc);
     let since_edge = counted.is_above(recent).choose(0, counted);
@@ -538,7 +562,7 @@ fn sector_starts(degrees: [f64; 6]) -> Vec<i32> {
 
 /// The rotor's angle per control period at this speed; `rise` as in [`Edges`].
 fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>, rise: Option<Expr<'b>>) -> Expr<'b> {
-    let ticks = PeriodTicks::of(l.spec.inverter.hall_capture);
+    let ticks = PeriodTicks::of(l.spec.inverter.rotor_sensing);
     let turn = if ticks.are_whole() {
         ticks.number(l) * omega
     } else {
@@ -561,7 +585,7 @@ fn turn_of_period<'b>(l: &Lowering<'b>, omega: Expr<'b>, rise: Option<Expr<'b>>)
 /// Angle per control period at the greatest mean speed times a factor.
 fn greatest_turn(spec: &Spec, factor: f64) -> f64 {
     let omega_max = (32_f64.exp2() - 1.0) / f64::from(spec.rev_min());
-    omega_max * spec.inverter.hall_capture.ticks_per_period() * factor
+    omega_max * spec.inverter.rotor_sensing.ticks_per_period() * factor
 }
 
 /// The angle, at most 30 degrees; `factor` is that of [`greatest_turn`], which may be less.

@@ -148,8 +148,7 @@ impl<'b> SpeedRegulator<'b> {
         let (speed, wanted) = if let Some(ramped) = ramped {
             (ramped.speed, ramped.wanted)
         } else {
-            let speed = (rotor.direction * rotor.omega).named("speed");
-            (speed, reference.read())
+            (rotor.signed_speed(), reference.read())
         };
         named! {
             let speed_error = (wanted - speed).within(self.greatest_error(l));

@@ -1,6 +1,6 @@
 //! Ramp of the speed set-point (semantics of predictive deadbeat, "Acceleration limit").
 
-use super::rotor::speed_word;
+use super::rotor::{greatest_speed, speed_word};
 use super::slew::approached;
 use super::{Lowering, Rotor};
 use crate::diagnostics::rpm;
@@ -39,7 +39,7 @@ pub struct Ramped<'b> {
 impl<'b> SpeedRamp<'b> {
     /// Declares the words; `limit` in rad/s2, `most` the greatest set-point.
     pub fn new(l: &Lowering<'b>, limit: f64, most: i64) -> Self {
-        let fastest = ((1_i64 << SPEED_BITS) - 1) / i64::from(l.spec.rev_min());
+        let fastest = greatest_speed(l.spec);
         let range = Interval::symmetric(most.max(fastest));
         let extra = BITS.saturating_sub(range.bits());
         let meaning = "speed set-point in force, base one turn per tick";
@@ -86,8 +86,8 @@ impl<'b> SpeedRamp<'b> {
             0 => word,
             extra => word << extra,
         };
+        let speed = rotor.signed_speed();
         named! {
-            let speed = rotor.direction * rotor.omega;
             let ramp_known = rotor.tracking.choose(2, 1);
             let begins = self.begun.read().is_below(ramp_known);
             let speed_before = begins.choose(shifted(speed), self.in_force.read());

@@ -6,7 +6,7 @@ use super::{Description, Period};
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, significant};
 use crate::interface::{PublicConstant, PublicValue};
-use crate::spec::{HallCapture, InverterSpec, Spec};
+use crate::spec::{RotorSensing, InverterSpec, Spec};
 use nalgebra::Vector2;
 
 /// All constants; `accuracy`: the proven error bounds.
@@ -25,7 +25,7 @@ pub(super) fn constants(
     list.extend(law.constants.iter().cloned());
     list.extend(accuracy);
     list.extend(law.stable.into_iter().flat_map(stable_constants));
-    if let HallCapture::Timer { ticks } = spec.inverter.hall_capture {
+    if let RotorSensing::TimedHalls { ticks } = spec.inverter.rotor_sensing {
         list.push(integer(
             "HALL_TIMER_HZ",
             "u32",

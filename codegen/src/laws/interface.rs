@@ -9,12 +9,12 @@ use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale};
 use crate::design::Envelope;
 use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
-    Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors, ThirdSensor,
+    AngleSensor, Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors, ThirdSensor,
     Unit, Units, Watch,
 };
 use crate::scaling::Scaled;
 use crate::spec::{
-    self, CurrentSensing, HallCapture, InverterSpec, Origins, Rule, Spec, SpeedLoop,
+    self, CurrentSensing, RotorSensing, InverterSpec, Origins, Rule, Spec, SpeedLoop,
 };
 use std::f64::consts::TAU;
 
@@ -37,7 +37,7 @@ pub fn interface(
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),
         delay: spec.controller.common().delay,
-        timer_capture: matches!(inverter.hall_capture, HallCapture::Timer { .. }),
+        timer_capture: matches!(inverter.rotor_sensing, RotorSensing::TimedHalls { .. }),
         bus_periods: inverter.bus_periods().map(|periods| periods as i32),
         residual: (spec.controller.common().residual_periods).map(|periods| Watch {
             word: RESIDUAL_COUNT,
@@ -75,6 +75,10 @@ fn limits(spec: &Spec, scale: Scale) -> Limits {
         brake_periods: spec.brake_periods() as i32,
         start_periods: spec.start_periods(),
         bus_counts: inverter.bus_counts(),
+        angle: spec.angle_sensor().map(|sensor| AngleSensor {
+            turns: sensor.turns,
+            offset: sensor.offset(),
+        }),
         sensors: Sensors {
             phases: match inverter.sensed_phases {
                 spec::SensedPhases::Bc => SensedPhases::Bc,
@@ -110,7 +114,7 @@ fn sensors(inverter: &InverterSpec) -> Vec<Sensor> {
 fn units(spec: &Spec, scale: Scale) -> Units {
     // The speed loop works with the angle per tick, all else with the angle per control period.
     let per_period = match spec.controller.common().speed {
-        Some(_) => spec.inverter.hall_capture.ticks_per_period(),
+        Some(_) => spec.inverter.rotor_sensing.ticks_per_period(),
         None => 1.0,
     };
     let turns = per_period / spec.inverter.t_s / 32_f64.exp2() / f64::from(spec.motor.pole_pairs);

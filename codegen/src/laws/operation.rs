@@ -6,7 +6,7 @@ use crate::blocks::OVER_SPEED_EDGES;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
 use crate::spec::{
-    BusCurrents, BusSource, CurrentSensor, CurrentSum, HallCapture, InverterSpec, SensedPhases,
+    BusCurrents, BusSource, CurrentSensor, CurrentSum, RotorSensing, InverterSpec, SensedPhases,
     Spec,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
@@ -83,7 +83,6 @@ fn three_sensors(inverter: &InverterSpec) -> Vec<String> {
 /// Signs, sectors, and the sensors' scales.
 pub fn wiring(spec: &Spec) -> Vec<String> {
     let inverter = &spec.inverter;
-    let codes = spec.motor.hall_codes.map(|code| format!("{code:03b}"));
     let angles = spec.motor.hall_angles.map(|angle| format!("{angle} deg"));
     let mut lines = vec![
         String::new(),
@@ -94,12 +93,17 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
         String::new(),
         "| sector | S1 | S2 | S3 | S4 | S5 | S6 |".to_owned(),
         "|---|---|---|---|---|---|---|".to_owned(),
-        format!("| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |", codes.join(" | ")),
+    ];
+    if spec.angle_sensor().is_none() {
+        let codes = spec.motor.hall_codes.map(|code| format!("{code:03b}"));
+        lines.push(format!("| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |", codes.join(" | ")));
+    }
+    lines.extend([
         format!("| current into, out of phase (positive set-point) | {} |", pairs().join(" | ")),
         format!("| begins at (forward, `theta_e`) | {} |", angles.join(" | ")),
         String::new(),
         "More: `hexagen::conventions`.".to_owned(),
-    ];
+    ]);
     let [x, y, z] = named_phases(inverter);
     match inverter.sensed_phases {
         SensedPhases::Ab => {}
@@ -109,15 +113,35 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
             format!("The current of phase {z}, which has no sensor, is -(i_{x} + i_{y}); its count in the sample is ignored."),
         ]),
     }
-    if let HallCapture::Timer { ticks } = inverter.hall_capture {
-        lines.extend([
+    lines.extend(rotor_sensor(spec));
+    lines
+}
+
+/// What a sample says of the rotor, Hall codes at samples apart.
+fn rotor_sensor(spec: &Spec) -> Vec<String> {
+    let inverter = &spec.inverter;
+    match inverter.rotor_sensing {
+        RotorSensing::SampledHalls => vec![],
+        RotorSensing::TimedHalls { ticks } => vec![
             String::new(),
             format!("`hall_ticks` is the time from the last Hall edge to the sample, counted at {} (`HALL_TIMER_HZ`), {} ticks", frequency(ticks / inverter.t_s), significant(ticks)),
             "in a control period. If an edge comes between the reading of code and ticks, the contradiction to the last period".to_owned(),
             "is detected, and the angle uses the expected time instead.".to_owned(),
-        ]);
+        ],
+        RotorSensing::Angle(sensor) => vec![
+            String::new(),
+            format!(
+                "A sample has an angle ([`Sample::with_angle`](::hexagen::Sample::with_angle)), 2^32 for a turn of the sensor: `theta_e` is {} times it, plus {} deg.",
+                sensor.turns,
+                significant(sensor.offset_deg)
+            ),
+            format!(
+                "The speed is the difference of two angles, with a time constant of {} periods; a difference above {} deg is taken as that.",
+                1 << spec.speed_filter(sensor),
+                significant(f64::from(spec.greatest_turn(sensor)) * 360.0 / 32_f64.exp2())
+            ),
+        ],
     }
-    lines
 }
 
 /// When control begins, and at which speed it may.
@@ -132,8 +156,10 @@ fn start(spec: &Spec, design: &LoopDesign) -> String {
             "Control may begin on a rotor that turns at up to {speed} rpm, at set-point 0{told}."
         ),
         periods => format!(
-            "A start keeps all legs off until two Hall edges in one direction tell the angle, and for {} where the rotor \
+            "A start keeps all legs off until {} in one direction tell the {}, and for {} where the rotor \
              stands or turns slowly; control may begin at up to {speed} rpm{told}.",
+            if spec.angle_sensor().is_some() { "two sectors" } else { "two Hall edges" },
+            if spec.angle_sensor().is_some() { "speed" } else { "angle" },
             engineering(f64::from(periods) * spec.inverter.t_s, "s")
         ),
     }
@@ -175,7 +201,12 @@ fn trips(spec: &Spec) -> Vec<String> {
     lines.push(match inverter.stall_periods {
         0 => "A stalled rotor does not (`stall_timeout` is off).".to_owned(),
         periods => {
-            format!("So do {periods} periods without a Hall edge while the set-point is not 0.")
+            let edge = if spec.angle_sensor().is_some() {
+                "in one sector"
+            } else {
+                "without a Hall edge"
+            };
+            format!("So do {periods} periods {edge} while the set-point is not 0.")
         }
     });
     lines.extend(over_speed(spec));
@@ -195,12 +226,18 @@ fn over_speed(spec: &Spec) -> Option<String> {
     } = spec.inverter;
     let speed = over_speed?;
     let turn = TAU / (speed * f64::from(spec.motor.pole_pairs));
-    let unsure = match spec.inverter.hall_capture {
-        HallCapture::Sampled => format!(
+    let unsure = match spec.inverter.rotor_sensing {
+        RotorSensing::SampledHalls => format!(
             ", where a turn is measured to a control period, {}",
             percent(t_s / turn)
         ),
-        HallCapture::Timer { .. } => String::new(),
+        RotorSensing::TimedHalls { .. } => String::new(),
+        RotorSensing::Angle(_) => {
+            return Some(format!(
+                "So do {OVER_SPEED_EDGES} periods in a row at more than {}.",
+                rpm(speed)
+            ));
+        }
     };
     Some(format!(
         "So do {OVER_SPEED_EDGES} Hall edges in a row at which the last electrical turn was faster than {}{unsure}.",

@@ -8,6 +8,7 @@
 #![doc = include_str!("units.md")]
 
 mod alternatives;
+mod angle;
 pub mod ast;
 mod basis;
 mod board;
@@ -37,6 +38,7 @@ mod value;
 mod variant;
 mod words;
 
+pub use angle::{AngleDirection, AngleSensor, RotorSource};
 pub use ast::{Board, BoardFile, SpecAst};
 pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
@@ -49,7 +51,7 @@ pub use harmonics::{Harmonics, ORDERS};
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};
 pub use model::{
-    BUS_FRESH, BusCurrents, BusSource, EmfShape, Fade, HALL_ANGLES, HallCapture, InverterSpec,
+    BUS_FRESH, BusCurrents, BusSource, EmfShape, Fade, HALL_ANGLES, RotorSensing, InverterSpec,
     MotorSpec, Spec,
 };
 pub use option_texts::help as option_help;

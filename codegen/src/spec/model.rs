@@ -4,7 +4,7 @@
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
 use crate::spec::{
-    ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, Harmonics, RATIO_BITS,
+    AngleSensor, ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, Harmonics, RATIO_BITS,
     SensedPhases,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
@@ -117,7 +117,7 @@ impl Spec {
     }
 
     fn ticks_per_second(&self) -> f64 {
-        self.inverter.hall_capture.ticks_per_period() / self.inverter.t_s
+        self.inverter.rotor_sensing.ticks_per_period() / self.inverter.t_s
     }
 }
 
@@ -294,24 +294,28 @@ impl Fade {
     }
 }
 
-/// How rotor position reaches the controller between Hall edges.
+/// How the rotor's position reaches the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HallCapture {
-    /// Edges are detected at the sampling instants.
-    Sampled,
-    /// A timer counts ticks since the last edge.
-    Timer {
+pub enum RotorSensing {
+    /// Hall edges are detected at the sampling instants.
+    SampledHalls,
+    /// A timer counts ticks since the last Hall edge.
+    TimedHalls {
         /// Timer ticks per control period, 2 to 65535, whole or not.
         ticks: f64,
     },
+    /// Every sample has an angle.
+    Angle(AngleSensor),
 }
 
-impl HallCapture {
-    /// Ticks of time since an edge per control period; half periods where edges are sampled.
+impl RotorSensing {
+    /// Ticks of the clock of the speed per control period: of the time since a Hall edge, half periods where edges
+    /// are sampled; periods with an angle.
     pub fn ticks_per_period(self) -> f64 {
         match self {
-            Self::Sampled => 2.0,
-            Self::Timer { ticks } => ticks,
+            Self::SampledHalls => 2.0,
+            Self::TimedHalls { ticks } => ticks,
+            Self::Angle(_) => 1.0,
         }
     }
 }
@@ -359,8 +363,8 @@ pub struct InverterSpec {
     pub max_current: f64,
     /// Limits of the bus current.
     pub bus_currents: BusCurrents,
-    /// Hall edge capture.
-    pub hall_capture: HallCapture,
+    /// What tells the rotor's position.
+    pub rotor_sensing: RotorSensing,
     /// Mechanical speed below which the angle is the sector's centre, rad/s.
     pub minimum_speed: f64,
     /// Greatest mechanical speed, rad/s.

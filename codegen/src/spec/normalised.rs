@@ -3,7 +3,7 @@
 
 use super::words::Words;
 use super::{
-    BusCurrents, BusSource, CurrentSensing, EmfShape, HallCapture, InverterSpec, MotorSpec,
+    BusCurrents, BusSource, CurrentSensing, EmfShape, RotorSensing, InverterSpec, MotorSpec,
     SensedPhases, SensingTimes, Spec,
 };
 use crate::spec::ControllerSpec;
@@ -39,7 +39,9 @@ impl Spec {
             }
         }
         text.number("torque_constant", self.torque_constant());
-        text.number("hall_codes", motor.hall_codes);
+        if self.angle_sensor().is_none() {
+            text.number("hall_codes", motor.hall_codes);
+        }
         if !motor.has_even_halls() {
             text.number("hall_angles", motor.hall_angles);
         }
@@ -97,19 +99,11 @@ impl Spec {
                 text.number(key, most);
             }
         }
-        text.word(
-            "hall_capture",
-            match inverter.hall_capture {
-                HallCapture::Sampled => "sampled",
-                HallCapture::Timer { .. } => "timer",
-            },
-        );
-        text.number("ticks", inverter.hall_capture.ticks_per_period());
-        text.number("age_max", self.age_max());
-        text.number("rev_min", self.rev_min());
+        self.write_rotor(text);
         text.number("omega_max", inverter.maximum_speed);
-        if let Some(turn) = self.over_speed_turn() {
-            text.number("over_speed_turn", turn);
+        match inverter.rotor_sensing {
+            RotorSensing::Angle(_) => text.optional("over_speed_step", self.over_speed_step()),
+            _ => text.optional("over_speed_turn", self.over_speed_turn()),
         }
         text.number("stall_periods", inverter.stall_periods);
         if inverter.hall_glitches > 0 {
@@ -121,6 +115,28 @@ impl Spec {
         }
         text.number("calibration_log2", inverter.calibration_log2);
         text.number("precharge_periods", inverter.precharge_periods);
+    }
+}
+
+impl Spec {
+    /// What tells the rotor's position.
+    fn write_rotor(&self, text: &mut Text) {
+        let sensing = self.inverter.rotor_sensing;
+        let capture = match sensing {
+            RotorSensing::Angle(sensor) => {
+                text.number("angle_turns", sensor.turns);
+                text.number("angle_offset", sensor.offset());
+                text.number("angle_filter", self.speed_filter(sensor));
+                text.number("turn_max", self.greatest_turn(sensor));
+                return;
+            }
+            RotorSensing::SampledHalls => "sampled",
+            RotorSensing::TimedHalls { .. } => "timer",
+        };
+        text.word("hall_capture", capture);
+        text.number("ticks", sensing.ticks_per_period());
+        text.number("age_max", self.age_max());
+        text.number("rev_min", self.rev_min());
     }
 }
 
@@ -184,6 +200,12 @@ impl Text {
         self.line(&format!("{key} = {value:?}"));
     }
 
+    fn optional(&mut self, key: &str, value: Option<impl Debug>) {
+        if let Some(value) = value {
+            self.number(key, value);
+        }
+    }
+
     fn one_or_each<T: Debug + PartialEq>(&mut self, key: &str, values: &[T]) {
         match values {
             [first, rest @ ..] if rest.iter().all(|value| value == first) => {
@@ -207,7 +229,7 @@ impl Text {
 mod tests {
     use crate::spec::{
         BusCurrents, BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor,
-        Discretisation, EmfShape, EmfSource, HALL_ANGLES, HallCapture, InverterSpec, LimitRule,
+        Discretisation, EmfShape, EmfSource, HALL_ANGLES, RotorSensing, InverterSpec, LimitRule,
         LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
     };
 
@@ -255,7 +277,7 @@ mod tests {
                 trip_current: 38.0,
                 max_current: 20.0,
                 bus_currents: BusCurrents::default(),
-                hall_capture: HallCapture::Timer { ticks: 37.5 },
+                rotor_sensing: RotorSensing::TimedHalls { ticks: 37.5 },
                 minimum_speed: 4.0,
                 maximum_speed: 314.0,
                 over_speed: None,

@@ -72,6 +72,11 @@ pub(crate) const MOTOR: &[Rule] = &[
     quantity("inertia", &[D::Inertia], 1e-9, 100.0, "24 g cm2"),
     quantity("inductance_tolerance", &[D::Ratio], 0.0, 0.9, "10 %"),
     quantity("resistance_tolerance", &[D::Ratio], 0.0, 0.9, "30 %"),
+    word("rotor", "angle"),
+    integer("angle_pole_pairs", 1, 64, "7"),
+    quantity("angle_offset", &[D::Angle], -360.0, 360.0, "12 deg"),
+    word("angle_direction", "backward"),
+    integer("angle_bits", 8, 32, "14"),
     Rule::of("hall_codes", Kind::Integers, "[1, 5, 4, 6, 2, 3]"),
     quantity(
         "hall_angles",

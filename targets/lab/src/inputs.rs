@@ -13,6 +13,7 @@ enum Input {
     CurrentB,
     Hall,
     HallTicks,
+    Angle,
 }
 
 impl Inputs {
@@ -25,6 +26,7 @@ impl Inputs {
                 "i_b" => Input::CurrentB,
                 "hall" => Input::Hall,
                 "hall_ticks" => Input::HallTicks,
+                "angle" => Input::Angle,
                 _ => return None,
             })
         });
@@ -38,6 +40,7 @@ impl Inputs {
             Input::CurrentB => checked.i_b().0,
             Input::Hall => checked.hall().0,
             Input::HallTicks => checked.hall_ticks().0,
+            Input::Angle => checked.angle().0,
         };
         self.0.iter().map(word).collect()
     }

@@ -1,7 +1,7 @@
 //! The generator's interpreter as a drive.
 
-use crate::{Inputs, limits, sensors};
-use hexagen::{Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
+use crate::{Inputs, angle, limits, sensors};
+use hexagen::{AngleSensor, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
 use hexagen_codegen::interface::{Interface, Watch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
 use hexagen_reference::Stop;
@@ -19,6 +19,7 @@ pub struct Interpreted<'g> {
     supervisor: Supervisor,
     limits: Limits,
     sensors: Sensors,
+    angle: Option<AngleSensor>,
     bus: Option<BusWatch>,
     /// What the law watches itself: index of its state word, the count at which it trips, its fault.
     watches: [Option<(usize, i32, Fault)>; 2],
@@ -99,6 +100,7 @@ impl<'g> Interpreted<'g> {
             supervisor: Supervisor::new(&limits, &sensors),
             limits,
             sensors,
+            angle: angle(&interface.limits),
             bus: interface.bus_periods.map(|periods| BusWatch {
                 told: false,
                 fault: None,
@@ -150,9 +152,11 @@ impl<'g> Interpreted<'g> {
             supervisor,
             limits,
             sensors,
+            angle,
             places,
             ..
         } = self;
+        let sample = &angle.map_or(*sample, |sensor| sensor.resolve(sample));
         let is_demanded = machine.params[places.set_point] != 0;
         let checked = match supervisor.check(limits, sensors, sample, || is_demanded) {
             Some(checked) => checked,

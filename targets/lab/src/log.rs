@@ -15,8 +15,10 @@ pub struct LogRow {
     pub adc_2: u16,
     /// Of the third, with `sensed_phases: abc` only.
     pub adc_3: Option<u16>,
-    /// Hall code, Ha in bit 2.
-    pub hall: u8,
+    /// Hall code, Ha in bit 2, with Hall sensors.
+    pub hall: Option<u8>,
+    /// Angle of the sensor, 2^32 a turn, with `rotor: angle`.
+    pub angle: Option<u32>,
     /// Ticks since the last edge, with an edge timer only.
     pub ticks: Option<u16>,
     /// Current set-point, ampere.
@@ -161,10 +163,11 @@ impl LogRow {
                 ));
             }
         }
-        if self.hall > 7 {
+        if let Some(hall) = self.hall
+            && hall > 7
+        {
             return Err(format!(
-                "`hall`: {} is no code of three sensors; give 0 to 7",
-                self.hall
+                "`hall`: {hall} is no code of three sensors; give 0 to 7"
             ));
         }
         self.call()?;

@@ -5,7 +5,7 @@ use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_
 use crate::plant::{Mechanics, Plant};
 use crate::{LabError, Progress};
 use hexagen_codegen::design::Envelope;
-use hexagen_codegen::spec::{HallCapture, Spec};
+use hexagen_codegen::spec::{RotorSensing, Spec};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -223,11 +223,11 @@ const FASTEST: f64 = 15.0;
 /// current is not its sample, whatever the control does.
 const SWING: f64 = 5.0;
 
-/// Whether a default drive can be right: it has an edge timer, and its period is short enough for the
+/// Whether a default drive can be right: it has an edge timer or an angle sensor, and its period is short enough for the
 /// motor.
 pub fn can_be_right(spec: &Spec) -> bool {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let is_timed = matches!(inverter.hall_capture, HallCapture::Timer { .. });
+    let is_timed = inverter.rotor_sensing != RotorSensing::SampledHalls;
     let rise = inverter.v_bus * inverter.t_s / (2.0 * motor.inductance);
     let swing = rise / motor.rated_current;
     is_timed && degrees_per_period(spec) <= FASTEST && swing <= SWING

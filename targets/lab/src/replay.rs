@@ -7,7 +7,7 @@ use crate::log::{Call, LogError, LogRow, rows};
 use hexagen::{Command, Legs, Sample};
 use hexagen_codegen::interface::Unit;
 use hexagen_codegen::ir::{Phase, Told, Value};
-use hexagen_codegen::spec::HallCapture;
+use hexagen_codegen::spec::RotorSensing;
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
 use std::io::{Read, Write};
@@ -65,18 +65,24 @@ fn sample(drive: &Prepared, row: &LogRow) -> Result<Sample, String> {
         adc[*phase] = count;
     }
     let [adc_a, adc_b, adc_c] = adc;
-    let mut sample = Sample::with_hall([adc_a, adc_b], row.hall).third_current(adc_c);
-    match (inverter.hall_capture, row.ticks) {
-        (HallCapture::Timer { .. }, Some(ticks)) => sample = sample.hall_ticks(ticks),
-        (HallCapture::Timer { .. }, None) => {
-            return Err("`ticks` is missing: the drive has an edge timer".to_owned());
+    let adc_ab = [adc_a, adc_b];
+    let sample = match (inverter.rotor_sensing, row.hall, row.angle) {
+        (RotorSensing::Angle(_), None, Some(angle)) => Sample::with_angle(adc_ab, angle),
+        (RotorSensing::Angle(_), ..) => {
+            return Err("the drive has an angle sensor: give `angle`, and no `hall`".to_owned());
         }
-        (HallCapture::Sampled, Some(_)) => {
-            return Err("`ticks`: the drive has no edge timer; leave it out".to_owned());
+        (_, Some(hall), None) => Sample::with_hall(adc_ab, hall),
+        _ => return Err("the drive has Hall sensors: give `hall`, and no `angle`".to_owned()),
+    };
+    let sample = sample.third_current(adc_c);
+    match (inverter.rotor_sensing, row.ticks) {
+        (RotorSensing::TimedHalls { .. }, Some(ticks)) => Ok(sample.hall_ticks(ticks)),
+        (RotorSensing::TimedHalls { .. }, None) => {
+            Err("`ticks` is missing: the drive has an edge timer".to_owned())
         }
-        (HallCapture::Sampled, None) => {}
+        (_, Some(_)) => Err("`ticks`: the drive has no edge timer; leave it out".to_owned()),
+        (_, None) => Ok(sample),
     }
-    Ok(sample)
 }
 
 /// Set-points and calls of a row.

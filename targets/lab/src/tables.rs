@@ -1,6 +1,6 @@
 //! Tables of a generated drive in the types of the runtime.
 
-use hexagen::{Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor};
+use hexagen::{AngleSensor, Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor};
 use hexagen_codegen::interface::{self, FormatEntry};
 use hexagen_codegen::ir::Program;
 use std::collections::BTreeSet;
@@ -32,6 +32,7 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         start_periods,
         bus_counts,
         sensors: _,
+        angle: _,
     } = *limits;
     Limits {
         adc_max,
@@ -51,6 +52,12 @@ pub fn limits(limits: &interface::Limits) -> Limits {
         start_periods,
         bus_counts,
     }
+}
+
+/// The angle sensor; none with Hall sensors.
+pub fn angle(limits: &interface::Limits) -> Option<AngleSensor> {
+    let sensor = limits.angle;
+    sensor.map(|interface::AngleSensor { turns, offset }| AngleSensor { turns, offset })
 }
 
 /// The current sensors.

@@ -6,6 +6,7 @@
 //! rounding (Hall decoding, edge timing, supervision) are common to both models; every rounded
 //! number is computed twice.
 
+mod angle;
 mod bit_true;
 mod hall;
 mod ideal;

@@ -52,11 +52,20 @@ pub struct Motor {
     pub emf_cosines: Option<[f64; 12]>,
     /// Torque per ampere of set-point, Nm/A.
     pub torque_constant: f64,
-    /// Hall codes of sectors 1 to 6, Ha in bit 2.
+    /// Hall codes of sectors 1 to 6, Ha in bit 2; with an angle sensor those of sensors in the usual order.
+    #[serde(default = "usual_codes")]
     pub hall_codes: [u8; 6],
     /// Electrical angles at which these sectors begin, degrees; none where all sensors are in place.
     #[serde(default)]
     pub hall_angles: Option<[f64; 6]>,
+}
+
+const fn usual_codes() -> [u8; 6] {
+    [1, 5, 4, 6, 2, 3]
+}
+
+const fn one_tick() -> f64 {
+    1.0
 }
 
 /// Electrical angles at which sectors 1 to 6 begin where all sensors are in place, degrees.
@@ -181,13 +190,30 @@ pub struct Inverter {
     #[serde(default)]
     pub dead_time: f64,
     /// How Hall edges are timed.
+    #[serde(default)]
     pub hall_capture: HallCapture,
-    /// Timer ticks per control period, whole or not (2 when the edges are sampled).
+    /// Timer ticks per control period, whole or not (2 when the edges are sampled, 1 with an angle sensor).
+    #[serde(default = "one_tick")]
     pub ticks: f64,
     /// Ticks of 60 electrical degrees at the least speed with a valid angle.
+    #[serde(default = "one")]
     pub age_max: u32,
     /// Ticks of an electrical turn at the greatest speed.
+    #[serde(default = "one")]
     pub rev_min: u32,
+    /// Electrical turns in a turn of the angle sensor, signed; none with Hall sensors.
+    pub angle_turns: Option<i32>,
+    /// Electrical angle at the sensor's angle 0, 2^32 a turn.
+    #[serde(default)]
+    pub angle_offset: u32,
+    /// Binary logarithm of the time constant of the speed's filter, periods.
+    #[serde(default)]
+    pub angle_filter: u32,
+    /// Greatest difference of two angles, 2^32 a turn.
+    #[serde(default)]
+    pub turn_max: u32,
+    /// Electrical angle per period at the over-speed, with an angle sensor, 2^32 a turn.
+    pub over_speed_step: Option<u32>,
     /// Greatest mechanical speed, rad/s.
     pub omega_max: f64,
     /// Ticks of an electrical turn at the over-speed; none: the speed is not watched.
@@ -289,14 +315,25 @@ impl SensedPhases {
 
     /// A sample with these counts of the first two sensors and the third phase, which says nothing where that
     /// has no sensor.
-    pub fn sample(self, [first, second, third]: [u16; 3], hall: u8) -> Sample {
+    pub fn sample(self, counts: [u16; 3], hall: u8) -> Sample {
+        let [adc_a, adc_b, adc_c] = self.counts(counts);
+        Sample::with_hall([adc_a, adc_b], hall).third_current(adc_c)
+    }
+
+    /// The same with the angle of a sensor.
+    pub fn sample_with_angle(self, counts: [u16; 3], angle: u32) -> Sample {
+        let [adc_a, adc_b, adc_c] = self.counts(counts);
+        Sample::with_angle([adc_a, adc_b], angle).third_current(adc_c)
+    }
+
+    /// Counts of phases a, b, c.
+    fn counts(self, [first, second, third]: [u16; 3]) -> [u16; 3] {
         let third = match self {
             Self::Abc => third,
             Self::Ab => 0,
             Self::Bc | Self::Ca => !first,
         };
-        let [adc_a, adc_b, adc_c] = self.of_phases([first, second], third);
-        Sample::with_hall([adc_a, adc_b], hall).third_current(adc_c)
+        self.of_phases([first, second], third)
     }
 }
 
@@ -343,10 +380,11 @@ pub struct BusSense {
 }
 
 /// How Hall edges are timed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HallCapture {
     /// Edges are seen at sampling instants.
+    #[default]
     Sampled,
     /// A timer counts from the last edge.
     Timer,
@@ -492,6 +530,13 @@ impl Spec {
                 "controller.emf_filter",
                 options.emf_filter,
                 "expected at most 1",
+            ));
+        }
+        if !(inverter.angle_filter <= 16 && i32::try_from(inverter.turn_max).is_ok()) {
+            return Err(Error::field(
+                "inverter.turn_max",
+                inverter.turn_max,
+                "expected less than half a turn, and a filter of at most 16 bits",
             ));
         }
         self.check_controller()?;

@@ -300,6 +300,17 @@ pub fn odd_poles(at: &Location, given: &str, poles: u32) -> Diagnostic {
     )
 }
 
+/// An angle sensor whose word says the electrical angle only by chance: `pairs` of its turn, `all` of the motor's.
+pub fn angle_pole_pairs(at: &Location, pairs: u32, all: u32) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        at,
+        format!(
+            "`angle_pole_pairs`: {pairs} does not divide the motor's {all} pole pairs, so that the electrical angle at the sensor's zero would differ from turn to turn; give {all} for a sensor on the shaft, or 1 for an electrical angle",
+        ),
+    )
+}
+
 /// Hall codes that are no Hall sequence; `why` is a clause.
 pub fn hall_codes(at: &Location, given: &str, why: &str) -> Diagnostic {
     Diagnostic::new(

@@ -5,7 +5,7 @@ use super::layout::{INDENT, wrapped};
 use super::limits::limits_of;
 use super::names::{Names, number, typed_number};
 use crate::emit::path::SINGLE;
-use crate::interface::{Interface, Unit, Watch};
+use crate::interface::{AngleSensor, Interface, Unit, Watch};
 use crate::ir::{Demand, Function, Program, Setter};
 use std::fmt::Write as _;
 
@@ -174,6 +174,18 @@ impl Drive<'_> {
         }
     }
 
+    /// The statement that makes an angle the electrical one; the sample for the supervisor.
+    fn resolve(&self, body: &mut String) -> &'static str {
+        let Some(AngleSensor { turns, offset }) = self.interface.limits.angle else {
+            return "sample";
+        };
+        body.push_str(&lines(&[&format!(
+            "const hexagen_sample seen = hexagen_resolve_angle(sample, {}, UINT32_C({offset:#010x}));",
+            typed_number(turns)
+        )]));
+        "&seen"
+    }
+
     /// The period without control.
     fn step_at_rest(&self) -> String {
         let names = self.names;
@@ -181,8 +193,11 @@ impl Drive<'_> {
         let mut body = lines(&[
             "const hexagen_mode before = drive->supervisor.mode;",
             "hexagen_checked checked;",
-            "const hexagen_rested rested = hexagen_rest(&drive->supervisor, &limits, sample, &checked);",
         ]);
+        let seen = self.resolve(&mut body);
+        body.push_str(&lines(&[&format!(
+            "const hexagen_rested rested = hexagen_rest(&drive->supervisor, &limits, {seen}, &checked);"
+        )]));
         let inner = INDENT.repeat(2);
         let _ = write!(
             body,
@@ -333,6 +348,7 @@ impl Drive<'_> {
 
     fn period(&self) -> Method {
         let mut body = lines(&["hexagen_checked checked;"]);
+        let seen = self.resolve(&mut body);
         if let Some(periods) = self.interface.bus_periods {
             let line = format!(
                 "const hexagen_fault fault = hexagen_pass_period(&drive->bus, {});",
@@ -354,7 +370,7 @@ impl Drive<'_> {
             ]));
         }
         let check = format!(
-            "if (!hexagen_check(&drive->supervisor, &limits, sample, &drive->{}, &checked)) {{",
+            "if (!hexagen_check(&drive->supervisor, &limits, {seen}, &drive->{}, &checked)) {{",
             self.demand()
         );
         body.push_str(&lines(&[&check]));
@@ -397,6 +413,9 @@ impl Drive<'_> {
             "Runs one control period: takes the measurements of its beginning, returns the inverter's command.",
             effect,
         ]);
+        if self.interface.limits.angle.is_some() {
+            text.push("The sample has a sensor's angle (hexagen_with_angle).".to_owned());
+        }
         if self.interface.timer_capture {
             text.push(
                 "The sample has a Hall code and the ticks since its edge (hexagen_with_ticks)."

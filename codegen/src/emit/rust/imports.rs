@@ -12,7 +12,8 @@ use std::collections::HashSet;
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 20] = [
+const SHARED: [&str; 21] = [
+    "AngleSensor",
     "Checked",
     "Control",
     "FixedBus",

@@ -73,6 +73,15 @@ impl Types<'_> {
             let sensors = sensors_of(limits.sensors);
             quote!(const SENSORS: Sensors = #sensors;)
         });
+        let angle = limits.angle.map(|sensor| {
+            let (turns, offset) = (number(sensor.turns.into()), number(sensor.offset.into()));
+            quote! {
+                const ANGLE: Option<AngleSensor> = Some(AngleSensor {
+                    turns: #turns,
+                    offset: #offset,
+                });
+            }
+        });
         let limits = limits_of(limits);
         let watch = |name: Source, watch: Option<Watch>| {
             watch.map(|Watch { word, most }| {
@@ -130,6 +139,7 @@ impl Types<'_> {
                 const FORMATS: &'static [Format] = &[#(#formats),*];
                 const LIMITS: Limits = #limits;
                 #sensors
+                #angle
                 const UNITS: Units = Units {
                     ampere: #ampere,
                     volt: #volt,

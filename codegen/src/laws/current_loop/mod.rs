@@ -287,6 +287,14 @@ impl<'b> CurrentLoop<'_, 'b> {
             kept: None,
             ahead: None,
         };
+        if let Some((words, angle)) = words.angle.zip(sample.angle) {
+            let rotor = words.track(l, angle);
+            if let Some(hall) = hall {
+                hall.sector_prev.set(hall.sector);
+            }
+            self.follow_rotor(&mut tracked, rotor);
+            return tracked;
+        }
         let Some(hall) = hall else {
             return tracked;
         };
@@ -294,11 +302,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             // With an angle, edges are evaluated in every period.
             let rotor = rotor.track(l, &hall, tracked.sample.hall_ticks);
             hall.sector_prev.set(hall.sector);
-            let advance = self.options.advance;
-            tracked.ahead =
-                (advance > 0.0).then(|| advanced_sector(l, advance, hall.sector, &rotor));
-            tracked.direction = Some(rotor.direction);
-            tracked.rotor = Some(rotor);
+            self.follow_rotor(&mut tracked, rotor);
         } else if let Some(direction) = words.direction {
             // Without an angle the commutation begins in the stage that senses the direction, at a
             // rare edge.
@@ -309,6 +313,17 @@ impl<'b> CurrentLoop<'_, 'b> {
             hall.sector_prev.set(hall.sector);
         }
         tracked
+    }
+
+    /// What the rotor's angle and speed tell.
+    fn follow_rotor(&self, tracked: &mut Tracked<'b>, rotor: Rotor<'b>) {
+        let (l, advance) = (self.l, self.options.advance);
+        tracked.ahead = (advance > 0.0).then(|| {
+            let seen = tracked.hall.map_or_else(|| sector_of(l, &tracked.sample), |hall| hall.sector);
+            advanced_sector(l, advance, seen, &rotor)
+        });
+        tracked.direction = Some(rotor.direction);
+        tracked.rotor = Some(rotor);
     }
 
     /// Step 5.

@@ -4,7 +4,7 @@ use super::CurrentLoop;
 use super::residual::ResidualWatch;
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{
-    BusCurrentLimit, BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator,
+    AngleWords, BusCurrentLimit, BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator,
     direction_word, sector_word,
 };
 use crate::ir::{Interval, Memory};
@@ -48,12 +48,14 @@ const LEGS: Interval = Interval { low: 0, high: 3 };
 
 /// State words of the shared step.
 pub struct Words<'b> {
-    /// Sector of the last sample; if edges are used.
+    /// Sector of the last sample; if its changes are used.
     pub sector_prev: Option<Memory<'b>>,
-    /// Direction of rotation; without rotor words only.
+    /// Direction of rotation; where neither edges nor angles tell the speed.
     pub direction: Option<Memory<'b>>,
     /// Timing of Hall edges.
     pub rotor: Option<RotorWords<'b>>,
+    /// Speed from a sensor's angles.
+    pub angle: Option<AngleWords<'b>>,
     /// The speed regulator.
     pub speed: Option<SpeedRegulator<'b>>,
     /// Fade of the set-point with the bus voltage.
@@ -117,6 +119,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (l, options, needs) = (self.l, self.options, self.needs);
         let (estimated, observes) = (self.uses(EmfSource::Estimated), self.observes());
         let needs_rotor = self.needs_rotor();
+        let sensor = l.spec.angle_sensor();
+        let needs_edges = needs_rotor && sensor.is_none();
         let fade = BusFade::new(l, set_point);
         let needs_direction = needs.commutation || fade.is_some();
         // The EMF of the last period is computed.
@@ -132,8 +136,11 @@ impl<'b> CurrentLoop<'_, 'b> {
         let needs_command = is_delayed && !needs.off_leg && !self.holds_emf() && !observes;
         let nets = Interval::symmetric(l.bus_interval().high + e_bound);
         Words {
-            sector_prev: (needs_rotor || needs_direction).then(|| sector_word(l)),
-            rotor: needs_rotor.then(|| RotorWords::new(l)),
+            sector_prev: (needs_edges || needs_direction).then(|| sector_word(l)),
+            rotor: needs_edges.then(|| RotorWords::new(l)),
+            angle: sensor
+                .filter(|_| needs_rotor)
+                .map(|sensor| AngleWords::new(l, sensor)),
             direction: (needs_direction && !needs_rotor).then(|| direction_word(l)),
             speed: options
                 .speed

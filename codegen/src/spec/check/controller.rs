@@ -1,5 +1,6 @@
 //! The choice of controller; its options are read by the controller's own folder.
 
+use super::angle;
 use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::{Collector, Location, catalogue};
@@ -8,7 +9,7 @@ use crate::spec::controller::common::{HallEdges, Surroundings};
 use crate::spec::controller::{self, KINDS, Kind};
 use crate::spec::reader::Reader;
 use crate::spec::schema;
-use crate::spec::{ControllerSpec, HallCapture};
+use crate::spec::{ControllerSpec, RotorSensing, RotorSource};
 use std::f64::consts::TAU;
 
 /// Options that are known but not available in this version.
@@ -17,14 +18,14 @@ const PLANNED_OPTIONS: [&str; 1] = ["zero"];
 /// The default controller.
 const DEFAULT_KIND: &str = "pdcc";
 
-/// The controller with its options, and the Hall edge capture.
+/// The controller with its options, and what tells the rotor's position.
 pub(super) fn read(
     section: &Section,
     fallback: &Location,
     motor: &Motor,
     inverter: &Inverter,
     errors: &mut Collector,
-) -> (Option<ControllerSpec>, Option<HallCapture>) {
+) -> (Option<ControllerSpec>, Option<RotorSensing>) {
     let any = Reader::new("controller", section, controller::rules(), fallback);
     if section.location.is_some() {
         any.require(errors, &["kind"]);
@@ -69,7 +70,14 @@ pub(super) fn read(
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = (kind.read)(&reader, &surroundings, errors);
-    (controller, read_capture(&reader, inverter, errors))
+    let sensing = match motor.rotor {
+        RotorSource::Halls => read_capture(&reader, inverter, errors),
+        RotorSource::Angle => {
+            angle::refuse_halls(&reader, motor, &["hall_capture"], errors);
+            motor.angle.map(RotorSensing::Angle)
+        }
+    };
+    (controller, sensing)
 }
 
 /// Options of another kind than the chosen one.
@@ -116,7 +124,7 @@ fn read_capture(
     reader: &Reader,
     inverter: &Inverter,
     errors: &mut Collector,
-) -> Option<HallCapture> {
+) -> Option<RotorSensing> {
     let by_default = if inverter.hall_timer_clock_given {
         HallEdges::Timer
     } else {
@@ -126,7 +134,7 @@ fn read_capture(
         .choice(errors, "hall_capture", &[])
         .unwrap_or(by_default);
     if edges == HallEdges::Sampled {
-        return Some(HallCapture::Sampled);
+        return Some(RotorSensing::SampledHalls);
     }
     let Some(clock) = &inverter.hall_timer_clock else {
         if !inverter.hall_timer_clock_given {
@@ -149,7 +157,7 @@ fn read_capture(
     let is_whole = (ticks - ticks.round()).abs() <= 1e-6 * ticks.max(1.0);
     let ticks = if is_whole { ticks.round() } else { ticks };
     if (2.0..=65535.0).contains(&ticks) {
-        return Some(HallCapture::Timer { ticks });
+        return Some(RotorSensing::TimedHalls { ticks });
     }
     errors.push(catalogue::hall_timer(&clock.part, &period.part, ticks, t_s));
     None

@@ -7,7 +7,7 @@ use super::{currents, relations};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::reader::Reader;
-use crate::spec::{ControllerSpec, CurrentSum, HallCapture, InverterSpec, SensedPhases};
+use crate::spec::{ControllerSpec, CurrentSum, RotorSensing, InverterSpec, SensedPhases};
 use std::f64::consts::FRAC_PI_3;
 
 /// Default `minimum_speed` over `rated_speed`, and the most that it becomes for a fast Hall timer.
@@ -28,7 +28,7 @@ pub(super) fn inverter(
     reader: &Reader,
     inverter: &Inverter,
     motor: &Motor,
-    capture: Option<HallCapture>,
+    capture: Option<RotorSensing>,
     controller: Option<&ControllerSpec>,
     errors: &mut Collector,
 ) -> Option<InverterSpec> {
@@ -89,7 +89,7 @@ pub(super) fn inverter(
         trip_current,
         max_current,
         bus_currents: currents::bus(inverter, trip_current, errors),
-        hall_capture: capture?,
+        rotor_sensing: capture?,
         minimum_speed,
         maximum_speed,
         over_speed: inverter.over_speed.as_ref().map(|given| given.si),

@@ -3,6 +3,7 @@
 //! Single fields first (`super::reader`), then motor, inverter and controller, then their relations
 //! (`relations`, `consistency`). A value in error never causes a second error.
 
+mod angle;
 mod consistency;
 mod controller;
 mod currents;
@@ -44,6 +45,8 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         schema::misplaced("inverter", field, errors)
     });
     let inverter = inverter::read(&inverter_reader, &mut errors);
+    let of_halls = ["hall_glitches", "minimum_speed"];
+    angle::refuse_halls(&inverter_reader, &motor, &of_halls, &mut errors);
     let (controller, capture) =
         controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
 

@@ -1,14 +1,14 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
 use super::emf::{self, Emf, Winding};
-use super::emf_shape;
+use super::{angle, emf_shape};
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
 use crate::spec::model::extreme_sectors;
 use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
 use crate::spec::units::Dimension;
-use crate::spec::{EmfShape, HALL_ANGLES, MotorSpec};
+use crate::spec::{AngleSensor, EmfShape, HALL_ANGLES, MotorSpec, RotorSource};
 
 /// The motor as far as it could be read.
 pub(super) struct Motor<'a> {
@@ -28,6 +28,9 @@ pub(super) struct Motor<'a> {
     pub inertia: Option<f64>,
     pub inductance_tolerance: f64,
     pub resistance_tolerance: f64,
+    /// None with Hall sensors, and together with an error.
+    pub angle: Option<AngleSensor>,
+    pub rotor: RotorSource,
     pub hall_codes: [u8; 6],
     pub hall_angles: [f64; 6],
 }
@@ -62,6 +65,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
     if let (Some(stated), Some(constant)) = (stated, emf_constant) {
         emf_shape::check_amplitude(reader, &stated, constant, errors);
     }
+    let (rotor, angle) = angle::read(reader, pole_pairs, errors);
     Motor {
         description: reader.text("description").unwrap_or_default().to_owned(),
         pole_pairs,
@@ -84,6 +88,8 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
         resistance_tolerance: reader
             .plain_quantity(errors, "resistance_tolerance")
             .map_or(0.3, |given| given.si),
+        angle,
+        rotor,
         hall_codes: read_hall_codes(reader, errors).unwrap_or([1, 5, 4, 6, 2, 3]),
         hall_angles: read_hall_angles(reader, errors).unwrap_or(HALL_ANGLES),
     }

@@ -4,7 +4,7 @@ use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue::{self, Part};
-use crate::spec::HallCapture;
+use crate::spec::RotorSensing;
 use crate::spec::reader::Reader;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -90,12 +90,15 @@ pub(super) fn check_bus(
     Some(())
 }
 
-/// Least speed that the Hall timer can measure, mechanical rad/s.
+/// Least speed that the Hall timer can measure, mechanical rad/s; none with an angle.
 pub(super) fn slowest(
     inverter: &Inverter,
     motor: &Motor,
-    capture: Option<HallCapture>,
+    capture: Option<RotorSensing>,
 ) -> Option<f64> {
+    if matches!(capture?, RotorSensing::Angle(_)) {
+        return None;
+    }
     let per_second = capture?.ticks_per_period() / inverter.t_s?;
     let [_, widest] = motor.extreme_sectors();
     let sector = FRAC_PI_3 * widest;
@@ -106,7 +109,7 @@ pub(super) fn slowest(
 pub(super) fn check_speeds(
     inverter: &Inverter,
     motor: &Motor,
-    capture: Option<HallCapture>,
+    capture: Option<RotorSensing>,
     (minimum, minimum_part): (f64, &Part),
     (maximum, maximum_part): (f64, &Part),
     errors: &mut Collector,
@@ -141,14 +144,13 @@ pub(super) fn check_speeds(
             f_pwm,
         ));
     }
-    let per_second = capture?.ticks_per_period() / t_s;
+    let clocked = capture.filter(|sensing| !matches!(sensing, RotorSensing::Angle(_)))?;
+    let per_second = clocked.ticks_per_period() / t_s;
     let ticks = per_second * FRAC_PI_3 * widest / (minimum * pole_pairs);
     if ticks > GREATEST_AGE * (1.0 + 1e-9) {
         let least = minimum * ticks / GREATEST_AGE;
-        let clock = match capture? {
-            HallCapture::Sampled => None,
-            HallCapture::Timer { .. } => Some(per_second * GREATEST_AGE / ticks),
-        };
+        let is_timed = matches!(clocked, RotorSensing::TimedHalls { .. });
+        let clock = is_timed.then_some(per_second * GREATEST_AGE / ticks);
         errors.push(catalogue::minimum_speed(minimum_part, ticks, least, clock));
     }
     Some(())

@@ -7,7 +7,7 @@ use crate::cli::{DriveArguments, Failure, print_json, print_text, shortened, tel
 use clap::Args;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{CurrentSensing, HallCapture, Reference, Spec};
+use hexagen_codegen::spec::{CurrentSensing, RotorSensing, Reference, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::text::significant;
@@ -227,9 +227,10 @@ impl Checked {
             Reference::Proportional => "proportional",
             Reference::QuasiSquare => "quasi-square",
         };
-        let edges = match inverter.hall_capture {
-            HallCapture::Sampled => "edges seen at samples (a timer is finer)",
-            HallCapture::Timer { .. } => "edges by a capture timer",
+        let edges = match inverter.rotor_sensing {
+            RotorSensing::SampledHalls => "edges seen at samples (a timer is finer)",
+            RotorSensing::TimedHalls { .. } => "edges by a capture timer",
+            RotorSensing::Angle(_) => "an angle sensor",
         };
         let mut lines = vec![
             format!("{}: {}", self.motor, self.verdict),

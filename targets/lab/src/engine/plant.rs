@@ -1,7 +1,7 @@
 //! The plant of a specification.
 
 use crate::closed_loop::{Delay, RunOptions};
-use crate::plant::{AdcChannel, EmfShape, LowSide, PlantParams, Wiring};
+use crate::plant::{AdcChannel, AngleSensor, EmfShape, LowSide, PlantParams, Wiring};
 use hexagen_codegen::spec::{self, Spec};
 
 /// Motor, inverter and sensors exactly as specified: nominal parameters, nominal bus, the dead
@@ -39,10 +39,15 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
             settling: times.settling,
             aperture: times.aperture,
         }),
-        hall_ticks_per_period: inverter.hall_capture.ticks_per_period(),
+        hall_ticks_per_period: inverter.rotor_sensing.ticks_per_period(),
         hall_codes: motor.hall_codes,
         hall_edges_deg: motor.hall_angles,
         hall_error_deg: [0.0; 3],
+        angle: spec.angle_sensor().map(|sensor| AngleSensor {
+            turns: sensor.turns,
+            offset_deg: sensor.offset_deg,
+            bits: sensor.bits,
+        }),
         mechanics: None,
         wiring: Wiring::default(),
     }

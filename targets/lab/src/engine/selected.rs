@@ -156,6 +156,12 @@ impl SelectedMotor {
         Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
     }
 
+    /// Whether the motor has an angle sensor in place of Hall sensors.
+    pub fn has_angle(&self) -> bool {
+        let rotor = self.ast.motor.field("rotor");
+        rotor.is_some_and(|field| field.value.to_string() == "angle")
+    }
+
     /// Like [`Self::prepare`], for commands with a torque set-point.
     ///
     /// # Errors

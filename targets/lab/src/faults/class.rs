@@ -2,7 +2,7 @@
 
 use super::defect::{CurrentDefect, Defect, PlantDefect, SignalDefect};
 use crate::plant::Short;
-use hexagen_codegen::spec::{BusSource, HallCapture, Spec};
+use hexagen_codegen::spec::{BusSource, RotorSensing, Spec};
 use serde::Serialize;
 
 /// The part of drive and motor that breaks.
@@ -19,6 +19,8 @@ pub enum Part {
     Halls,
     /// The timer that measures the age of Hall edges.
     EdgeTimer,
+    /// The angle sensor.
+    Angle,
     /// The bus and its measurement.
     Bus,
     /// Shaft and magnets.
@@ -29,11 +31,12 @@ pub enum Part {
 
 impl Part {
     /// All of them, in the order of the study.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::CurrentSensors,
         Self::Phases,
         Self::Halls,
         Self::EdgeTimer,
+        Self::Angle,
         Self::Bus,
         Self::Rotor,
         Self::Control,
@@ -48,6 +51,7 @@ impl Part {
             Self::Phases => "phases and switches",
             Self::Halls => "Hall sensors",
             Self::EdgeTimer => "edge timer",
+            Self::Angle => "angle sensor",
             Self::Bus => "bus",
             Self::Rotor => "rotor",
             Self::Control => "control interrupt",
@@ -97,13 +101,17 @@ pub fn classes(spec: &Spec) -> Vec<FaultClass> {
     let mut list = List(Vec::new());
     list.current_sensors(spec.inverter.sensed_phases.phases());
     list.phases();
-    list.halls();
-    if let HallCapture::Timer { .. } = spec.inverter.hall_capture {
-        list.edge_timer();
+    match spec.inverter.rotor_sensing {
+        RotorSensing::SampledHalls => list.halls(),
+        RotorSensing::TimedHalls { .. } => {
+            list.halls();
+            list.edge_timer();
+        }
+        RotorSensing::Angle(_) => list.angle(),
     }
     list.bus(matches!(spec.inverter.bus, BusSource::Measured { .. }));
     list.rotor_and_control();
-    list.sound();
+    list.sound(spec.angle_sensor().is_some());
     list.0
 }
 
@@ -213,6 +221,16 @@ impl List {
         self.signal(part, name, SignalDefect::EdgeTimer { ticks: u16::MAX });
     }
 
+    fn angle(&mut self) {
+        let part = Part::Angle;
+        self.signal(part, "angle stuck", SignalDefect::AngleStuck);
+        let name = "angle half a turn off for a sample, every 20 ms";
+        self.signal(part, name, SignalDefect::AngleJumps);
+        let name = "angle sensor displaced by 15 deg";
+        let error_deg = DISPLACED;
+        self.plant(part, name, PlantDefect::Angle { error_deg });
+    }
+
     fn bus(&mut self, is_measured: bool) {
         for (name, factor) in [("bus sags to 50 %", 0.5), ("bus rises to 150 %", 1.5)] {
             let is_told = true;
@@ -240,7 +258,7 @@ impl List {
         self.add(part, "interrupt lost for good", Defect::Interrupt { lost });
     }
 
-    fn sound(&mut self) {
+    fn sound(&mut self, has_angle: bool) {
         let part = Part::Sound;
         self.add(part, "as specified", Defect::None);
         for (name, factors) in [
@@ -261,6 +279,11 @@ impl List {
         self.plant(part, "current sensors 2 % apart", apart);
         let noise = PlantDefect::AdcNoise { rms: 1.0 };
         self.plant(part, "noise of 1 ADC count rms", noise);
+        if has_angle {
+            let error_deg = PLACED;
+            self.plant(part, "angle sensor 5 deg off", PlantDefect::Angle { error_deg });
+            return;
+        }
         for (name, error_deg) in [
             ("Hall sensor Ha 5 deg off", [PLACED, 0.0, 0.0]),
             ("all Hall sensors 5 deg off", [PLACED; 3]),

@@ -76,6 +76,11 @@ pub enum PlantDefect {
         /// Electrical degrees; positive is late in forward rotation.
         error_deg: [f64; 3],
     },
+    /// A displaced angle sensor.
+    Angle {
+        /// Electrical degrees; positive is late in forward rotation.
+        error_deg: f64,
+    },
 }
 
 /// A change of signals between plant and drive.
@@ -103,6 +108,10 @@ pub enum SignalDefect {
     HallFlips,
     /// All three Hall lines do so: the code of the opposite sector.
     HallOpposite,
+    /// The angle sensor's angle no longer changes.
+    AngleStuck,
+    /// It is half an electrical turn off for one sample every 20 ms.
+    AngleJumps,
     /// The timer of Hall edges shows this count.
     EdgeTimer {
         /// Ticks.
@@ -163,6 +172,12 @@ impl PlantDefect {
             Self::Halls { error_deg } => {
                 let known = plant.hall_error_deg;
                 plant.hall_error_deg = std::array::from_fn(|x| known[x] + error_deg[x]);
+            }
+            // The true angle at the sensor's angle 0 is more than the stated one.
+            Self::Angle { error_deg } => {
+                if let Some(sensor) = &mut plant.angle {
+                    sensor.offset_deg += error_deg;
+                }
             }
         }
     }

@@ -15,6 +15,8 @@ pub(super) struct Signals {
     offsets: [f64; 3],
     full_scale: f64,
     ticks_per_period: f64,
+    /// Half an electrical turn of the angle sensor, words of its angle; none with Hall sensors.
+    half_turn: Option<u32>,
     /// Samples from one disturbance of a Hall line to the next.
     glitch_periods: usize,
     /// Samples since the defect.
@@ -38,6 +40,7 @@ impl Signals {
             offsets,
             full_scale: f64::from((1_u32 << plant.adc[0].bits) - 1),
             ticks_per_period: plant.hall_ticks_per_period,
+            half_turn: (plant.angle).map(|sensor| (1 << 31) / sensor.turns.unsigned_abs()),
             glitch_periods: ((GLITCHES_EVERY / plant.t_s).round() as usize).max(1),
             samples: 0,
             last: Sample::default(),
@@ -65,9 +68,11 @@ impl Signals {
             _ => self.ticks_of(hall, sample),
         };
         let [adc_a, adc_b, adc_c] = counts;
-        self.last = Sample::with_hall([adc_a, adc_b], hall)
-            .third_current(adc_c)
-            .hall_ticks(ticks);
+        let read = match self.half_turn {
+            None => Sample::with_hall([adc_a, adc_b], hall).hall_ticks(ticks),
+            Some(half) => Sample::with_angle([adc_a, adc_b], self.angle(half, sample)),
+        };
+        self.last = read.third_current(adc_c);
         self.last
     }
 
@@ -95,8 +100,23 @@ impl Signals {
         counts
     }
 
+    fn angle(&self, half_turn: u32, sample: &Sample) -> u32 {
+        match self.defect {
+            Some(SignalDefect::AngleStuck) => self.last.angle(),
+            Some(SignalDefect::AngleJumps) if self.is_disturbed() => {
+                sample.angle().wrapping_add(half_turn)
+            }
+            _ => sample.angle(),
+        }
+    }
+
+    /// Whether a sample is disturbed by what disturbs one now and then.
+    fn is_disturbed(&self) -> bool {
+        self.samples.is_multiple_of(self.glitch_periods)
+    }
+
     fn hall(&mut self, defect: SignalDefect, code: u8) -> u8 {
-        let is_disturbed = self.samples.is_multiple_of(self.glitch_periods);
+        let is_disturbed = self.is_disturbed();
         match defect {
             SignalDefect::HallStuck { line, is_high } => {
                 let bit = 0b100 >> line;

@@ -141,10 +141,9 @@ fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
         }
         if is_short && let Some(stretch) = stretches.last_mut() {
             check_range(spec, &row).map_err(at)?;
-            stretch.push(Reading {
-                current: flux::current(spec, row.counts()),
-                hall: row.hall,
-            });
+            let hall = row.hall.ok_or_else(|| at("`hall` is missing".to_owned()))?;
+            let current = flux::current(spec, row.counts());
+            stretch.push(Reading { current, hall });
         }
     }
     let longest = stretches.into_iter().max_by_key(Vec::len);

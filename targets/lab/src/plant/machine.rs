@@ -7,6 +7,7 @@ use super::segment::{Segment, Series, TERMS, integral};
 use super::short::{Detour, tied};
 use super::{Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
 use hexagen::{Legs, Sample};
+use std::f64::consts::TAU;
 
 /// Minimum steps per period with a free speed, which is constant within a step.
 const MECHANICAL_STEPS: f64 = 20.0;
@@ -75,6 +76,8 @@ pub struct Plant {
     segment: Segment,
     period: u64,
     theta_e: f64,
+    /// Whole electrical turns before it.
+    turns: f64,
     omega_m: f64,
     currents: [f64; 3],
     mean_voltages: [f64; 3],
@@ -132,6 +135,7 @@ impl Plant {
             segment: Segment::default(),
             period: 0,
             theta_e: wrap(theta_e),
+            turns: 0.0,
             omega_m,
             currents: [0.0; 3],
             mean_voltages: [0.0; 3],
@@ -228,6 +232,10 @@ impl Plant {
         let spared = self.params.adc.len() as u64 - 2;
         self.blind += blind.saturating_sub(spared);
         let [adc_a, adc_b, adc_c] = counts;
+        if let Some(sensor) = self.params.angle {
+            let angle = sensor.word(self.theta_e + TAU * self.turns);
+            return Sample::with_angle([adc_a, adc_b], angle).third_current(adc_c);
+        }
         Sample::with_hall([adc_a, adc_b], self.sensors.code(self.theta_e))
             .third_current(adc_c)
             .hall_ticks(ticks.clamp(0.0, f64::from(u16::MAX)) as u16)
@@ -363,6 +371,7 @@ impl Plant {
         self.sensors
             .sweep(self.theta_e, theta_end, self.segment.start, h);
         self.theta_e = wrap(theta_end);
+        self.turns += ((theta_end - self.theta_e) / TAU).round();
         if let Some(mechanics) = self.params.mechanics {
             self.omega_m = speed_after(&mechanics, self.omega_m, impulse, h);
         }

@@ -23,7 +23,8 @@ pub use energy::{EnergyBalance, EnergyMeter};
 pub use gates::{Gate, Gates};
 pub use machine::{Observer, Plant, Truth};
 pub use params::{
-    AdcChannel, EmfShape, LowSide, Mechanics, PlantError, PlantParams, STANDARD_HALL_CODES, Wiring,
+    AdcChannel, AngleSensor, EmfShape, LowSide, Mechanics, PlantError, PlantParams,
+    STANDARD_HALL_CODES, Wiring,
 };
 pub(crate) use segment::integral;
 pub use segment::{Segment, Series, TERMS, Terminal};

@@ -1,10 +1,12 @@
 //! Parameters of the plant in SI units, and their check.
 
 use super::Short;
+use super::floor;
 use super::hall::EVEN_EDGES_DEG;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::ORDERS;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Hall codes `HaHbHc` of sectors S1 to S6 in the wiring of [`hexagen::conventions`].
 pub const STANDARD_HALL_CODES: [u8; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
@@ -136,6 +138,28 @@ pub struct Mechanics {
     pub viscous: f64,
 }
 
+/// A sensor of the shaft's angle, or of the electrical angle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AngleSensor {
+    /// Electrical turns in a turn of the sensor, not 0; negative where its angle falls in forward rotation.
+    pub turns: i32,
+    /// Electrical angle at its angle 0, degrees.
+    pub offset_deg: f64,
+    /// Bits of a turn that it resolves, 1 to 32.
+    pub bits: u32,
+}
+
+impl AngleSensor {
+    /// The word of a sample at an electrical angle in radians, 2^32 a turn, at the nearest of its steps; whole turns
+    /// count, as they are parts of the sensor's.
+    pub(super) fn word(self, theta_e: f64) -> u32 {
+        let turn = (theta_e - self.offset_deg.to_radians()) / (TAU * f64::from(self.turns));
+        let steps = f64::from(self.bits).exp2();
+        let step = floor((turn - floor(turn)) * steps + 0.5) % steps;
+        (step * (32.0 - f64::from(self.bits)).exp2()) as u32
+    }
+}
+
 /// Motor, inverter and sensors of a simulated plant. Arrays are per phase a, b, c, named after the
 /// inverter's legs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -182,6 +206,9 @@ pub struct PlantParams {
     /// Placement error of the sensors Ha, Hb, Hc in electrical degrees; positive edges come late
     /// in forward rotation.
     pub hall_error_deg: [f64; 3],
+    /// An angle sensor, whose angle takes the place of Hall code and ticks in the samples.
+    #[serde(default)]
+    pub angle: Option<AngleSensor>,
     /// Inertia and load, or `None` for a shaft held at its initial speed.
     pub mechanics: Option<Mechanics>,
     /// Wires and switches; sound by default.
@@ -264,6 +291,7 @@ impl PlantParams {
             hall_codes: STANDARD_HALL_CODES,
             hall_edges_deg: EVEN_EDGES_DEG,
             hall_error_deg: [0.0; 3],
+            angle: None,
             mechanics: None,
             wiring: Wiring::default(),
         }

@@ -12,7 +12,7 @@ use crate::text::significant;
 use crate::verification::{Checked, verify_drives};
 use crate::{LabError, Progress};
 use hexagen_codegen::design::Envelope;
-use hexagen_codegen::spec::{HallCapture, KINDS};
+use hexagen_codegen::spec::{RotorSensing, KINDS};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -172,9 +172,10 @@ impl Plan {
 
 /// The motor file's own controller as a row.
 fn of_file(own: &Prepared) -> Planned {
-    let capture = match own.spec.inverter.hall_capture {
-        HallCapture::Timer { .. } => Capture::Timer,
-        HallCapture::Sampled => Capture::Sampled,
+    let capture = match own.spec.inverter.rotor_sensing {
+        RotorSensing::TimedHalls { .. } => Capture::Timer,
+        RotorSensing::SampledHalls => Capture::Sampled,
+        RotorSensing::Angle(_) => Capture::Angle,
     };
     Planned {
         row: own_row(),
@@ -220,6 +221,7 @@ fn plan(
             None => left_out.push((word, reason, vec![row])),
         }
     };
+    let has_angle = motor.has_angle();
     for row in rows {
         // The paper's Euler discretisation suits its motor; the exact one suits all.
         let timer = if is_paper {
@@ -227,12 +229,20 @@ fn plan(
         } else {
             row.variant.replace("discretisation=euler,", "")
         };
-        let sampled = timer.replace("hall_capture=timer", "hall_capture=sampled");
-        let made = [
-            (Capture::Timer, "timer", timer),
-            (Capture::Sampled, "sampled", sampled),
-        ]
-        .map(|(capture, word, variant)| (capture, word, motor.prepare(Some(&variant))));
+        let made = if has_angle {
+            let variant = timer.replace(",hall_capture=timer", "");
+            vec![(Capture::Angle, "", variant)]
+        } else {
+            let sampled = timer.replace("hall_capture=timer", "hall_capture=sampled");
+            vec![
+                (Capture::Timer, "timer", timer),
+                (Capture::Sampled, "sampled", sampled),
+            ]
+        };
+        let made: Vec<_> = made
+            .into_iter()
+            .map(|(capture, word, variant)| (capture, word, motor.prepare(Some(&variant))))
+            .collect();
         let generates = made.iter().any(|(_, _, drive)| drive.is_ok());
         let mut drives = Vec::new();
         for (capture, word, drive) in made {
@@ -240,7 +250,7 @@ fn plan(
                 Ok(drive) => drives.push((capture, drive)),
                 Err(error) if generates => leave_out(word, error, row.label),
                 // One reason suffices, that of the capture with fewer requirements.
-                Err(error) if capture == Capture::Sampled => leave_out("", error, row.label),
+                Err(error) if capture != Capture::Timer => leave_out("", error, row.label),
                 Err(_) => {}
             }
         }
@@ -258,7 +268,7 @@ fn plan(
     }
     // What a board without an edge timer leaves out is told once, in the user's words.
     let has_timer = motor.ast.inverter.field("hall_timer_clock").is_some();
-    if !has_timer {
+    if !has_timer && !has_angle {
         left_out.retain(|(word, ..)| *word != "timer");
         notes.push(NO_TIMER.to_owned());
     }

@@ -107,13 +107,15 @@ pub struct Variant {
     pub generated: Option<GeneratedTexts>,
 }
 
-/// Capture of Hall edges.
+/// What tells the rotor's position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Capture {
-    /// Seen at sampling instants.
+    /// Hall edges seen at sampling instants.
     Sampled,
-    /// Captured by a timer.
+    /// Hall edges captured by a timer.
     Timer,
+    /// An angle sensor.
+    Angle,
 }
 
 /// One row of the result table.

@@ -157,6 +157,7 @@ impl Planned {
         let expected = match capture {
             Capture::Timer => Some(self.row.timer.clone()),
             Capture::Sampled => self.row.sampled.clone(),
+            Capture::Angle => None,
         };
         Line {
             drive,

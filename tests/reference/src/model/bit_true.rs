@@ -24,6 +24,7 @@ mod speed;
 mod state;
 mod tables;
 
+use super::angle::AngleSensor;
 use super::hall::HallClock;
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Mode, Observation, Period, Stop, Units};
@@ -55,6 +56,8 @@ pub struct BitTrue<W: Word = f64> {
     variant: Variant,
     hall_sectors: [usize; 8],
     clock: HallClock,
+    /// In place of Hall sensors.
+    angle: Option<AngleSensor>,
     limits: Limits,
     k: Constants<W>,
     law: Law<W>,
@@ -130,6 +133,7 @@ impl<W: Word> BitTrue<W> {
             variant: scale.variant,
             hall_sectors: sector::hall_sectors(&spec.motor),
             clock: HallClock::new(spec),
+            angle: AngleSensor::new(spec),
             limits: Limits::new(
                 spec,
                 Units {
@@ -348,7 +352,8 @@ impl<W: Word> BitTrue<W> {
         let i_c = -(i[0] + i[1]);
 
         // 2 hall, 3 supervise
-        let hall = self.state.supervisor.take_hall(&self.limits, sample.hall());
+        let hall = (self.angle).map_or_else(|| sample.hall(), |sensor| sensor.code(sample));
+        let hall = self.state.supervisor.take_hall(&self.limits, hall);
         let event = HallEvent::new(&self.hall_sectors, hall.code(), self.state.sector_prev);
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
@@ -385,7 +390,12 @@ impl<W: Word> BitTrue<W> {
             sector_eff: sector,
             ..rotor::Angle::default()
         };
-        if self.variant.rotor {
+        if let (true, Some(sensor)) = (self.variant.rotor, &self.angle) {
+            let theta = sensor.theta(sample);
+            let timing = &mut self.state.timing;
+            sensor.follow(timing, theta, |turn| floor_weighted(turn, sensor.share));
+            angle = rotor::sensed(k, timing, theta, sector);
+        } else if self.variant.rotor {
             self.state
                 .timing
                 .step(&self.clock, &event, direction_before, input(sample.ticks()));

@@ -59,14 +59,18 @@ pub struct HallTiming<W = f64> {
     pub direction: W,
     /// Ticks from the last edge to the last sample.
     pub age_prev: W,
-    /// 0: nothing known; 1: one edge seen; 2: `turn` is valid.
+    /// 0: nothing known; 1: one edge, or angle, seen; 2: the speed is valid.
     pub edges: u8,
     /// The last six edge-to-edge intervals, newest first.
     pub intervals: [W; 6],
     /// Their sum: ticks of one electrical turn.
     pub rev: W,
-    /// Edges in a row at which the turn was too short.
+    /// Edges in a row at which the turn was too short, or periods in a row with too large an angle.
     pub too_fast: W,
+    /// With an angle sensor: the last sample's angle, 2^32 a turn, signed.
+    pub theta_prev: W,
+    /// With an angle sensor: angle per period, 2^32 a turn, signed.
+    pub step: W,
 }
 
 /// Edges in a row with too short a turn that are an over-speed.
@@ -81,6 +85,8 @@ impl<W: Word> Default for HallTiming<W> {
             intervals: [word(1.0); 6],
             rev: word(6.0),
             too_fast: word(0.0),
+            theta_prev: word(0.0),
+            step: word(0.0),
         }
     }
 }
@@ -117,6 +123,16 @@ impl<W: Word> HallTiming<W> {
     #[inline]
     pub fn is_too_fast(&self) -> bool {
         self.too_fast >= TOO_FAST
+    }
+
+    /// Counts an edge, or a period, of a rotor that is too fast or not.
+    #[inline]
+    pub fn count_speed(&mut self, is_over: bool) {
+        self.too_fast = if is_over {
+            lesser(self.too_fast + 1.0, TOO_FAST)
+        } else {
+            word(0.0)
+        };
     }
 
     /// One sample; `direction_before` is the direction before this sample's edge was evaluated.
@@ -157,11 +173,7 @@ impl<W: Word> HallTiming<W> {
             };
             let intervals = self.intervals.into_iter();
             self.rev = intervals.fold(word(clock.turn_rest), |turn, interval| turn + interval);
-            self.too_fast = if self.edges == 2 && self.rev < clock.over_speed_turn {
-                lesser(self.too_fast + 1.0, TOO_FAST)
-            } else {
-                word(0.0)
-            };
+            self.count_speed(self.edges == 2 && self.rev < clock.over_speed_turn);
         }
         if age > clock.age_max || (self.edges == 2 && age * 3.0 > self.rev) {
             self.edges = 0;

@@ -9,6 +9,7 @@ mod limit;
 mod speed;
 mod vector;
 
+use super::angle::AngleSensor;
 use super::hall::{GREATEST_CHANGE, HallClock, RISE};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
@@ -25,6 +26,9 @@ use nalgebra::{Vector2, Vector3};
 use speed::SpeedLoop;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
 use vector::{clarke, from_ab, phases, to_ab};
+
+/// Radians of an angle word.
+const RADIANS: f64 = TAU / 4_294_967_296.0;
 
 /// Exact leg commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +73,8 @@ pub struct Ideal {
     sectors: [[f64; 2]; 6],
     bus_watch: Option<BusWatch>,
     clock: HallClock,
+    /// In place of Hall sensors.
+    sensor: Option<AngleSensor>,
     limits: Limits,
     gain: f64,
     bus_sense: Option<BusSense>,
@@ -141,6 +147,7 @@ impl Ideal {
             sectors: motor.sectors_beyond_places(),
             bus_watch: BusWatch::new(inverter),
             clock: HallClock::new(spec),
+            sensor: AngleSensor::new(spec),
             limits,
             gain,
             bus_sense,
@@ -298,7 +305,8 @@ impl Ideal {
         let i = clarke(&i_abc);
 
         // 2 hall, 3 supervise
-        let hall = self.state.supervisor.take_hall(&self.limits, sample.hall());
+        let hall = (self.sensor).map_or_else(|| sample.hall(), |sensor| sensor.code(sample));
+        let hall = self.state.supervisor.take_hall(&self.limits, hall);
         let event = HallEvent::new(&self.hall_sectors, hall.code(), self.state.sector_prev);
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
@@ -330,7 +338,14 @@ impl Ideal {
 
         // 4 rotor
         let sector = event.sector;
-        let (theta, step_angle, sector_eff) = if self.variant.rotor {
+        let (theta, step_angle, sector_eff) = if let (true, Some(sensor)) =
+            (self.variant.rotor, self.sensor)
+        {
+            let theta = sensor.theta(sample);
+            let timing = &mut self.state.timing;
+            sensor.follow(timing, theta, |turn| turn * sensor.share);
+            self.sensed(theta, sector)
+        } else if self.variant.rotor {
             self.state.timing.step(
                 &self.clock,
                 &event,
@@ -613,7 +628,9 @@ impl Ideal {
     /// Electrical angle per tick, radians; 0 while unknown.
     fn electrical_speed(&self) -> f64 {
         let timing = &self.state.timing;
-        if timing.edges == 2 {
+        if self.sensor.is_some() {
+            timing.step.abs() * RADIANS
+        } else if timing.edges == 2 {
             TAU / timing.rev.max(self.clock.rev_min)
         } else {
             0.0
@@ -629,6 +646,18 @@ impl Ideal {
         let most = GREATEST_CHANGE * timing.rev;
         let change = timing.shortened().clamp(-most, most);
         1.0 + RISE * change / timing.rev.max(self.clock.rev_min)
+    }
+
+    /// The same of a sensor's angle, as a word.
+    fn sensed(&self, theta: f64, sector: usize) -> (f64, f64, usize) {
+        let (theta, step_angle) = (theta * RADIANS, self.state.timing.step * RADIANS);
+        let sector_eff = if self.variant.options.advance > 0.0 && self.state.timing.edges == 2 {
+            let ahead = theta + self.variant.options.advance * step_angle + FRAC_PI_6;
+            (ahead / FRAC_PI_3).floor().rem_euclid(6.0) as usize + 1
+        } else {
+            sector
+        };
+        (theta, step_angle, sector_eff)
     }
 
     /// Angle at the sample and angle per period (radians), and the sector with its advance.

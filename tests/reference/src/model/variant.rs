@@ -94,7 +94,8 @@ impl Variant {
                 || options.advance > 0.0
                 || options.reference == Reference::Proportional
                 || options.has_speed_loop()
-                || spec.inverter.over_speed_turn.is_some(),
+                || spec.inverter.over_speed_turn.is_some()
+                || spec.inverter.over_speed_step.is_some(),
             commutation: spec.commutation_end().filter(|_| commutates),
             emf,
             held: if held { Switch::On } else { Switch::Off },

@@ -13,6 +13,9 @@ use std::f64::consts::TAU;
 /// Steps of a block.
 const BLOCK: u32 = 512;
 
+/// An electrical turn, words of angle.
+const TURN: f64 = 4_294_967_296.0;
+
 /// Maximum steps of start-up; longer ones are abandoned.
 const START_UP: u32 = 1 << 14;
 
@@ -80,6 +83,8 @@ pub struct Stimulus {
     /// Ticks since the last Hall edge.
     age: f64,
     codes: [u8; 6],
+    /// Electrical turns in a turn of the angle sensor, and the electrical angle at its angle 0; none with Hall sensors.
+    angle: Option<(i32, u32)>,
     ticks: f64,
     age_max: u32,
     adc_max: i32,
@@ -125,6 +130,7 @@ impl Stimulus {
             is_reset: false,
             age: 0.0,
             codes: spec.motor.hall_codes,
+            angle: (inverter.angle_turns).map(|turns| (turns, inverter.angle_offset)),
             ticks: inverter.ticks,
             age_max: inverter.age_max,
             adc_max: (1 << inverter.adc_bits) - 1,
@@ -235,9 +241,31 @@ impl Stimulus {
             let noise = self.random.i32(-1..=1);
             *count = self.adc(offset + noise);
         }
-        self.sensed
-            .sample(counts, self.codes[self.sector])
-            .hall_ticks(u16::MAX)
+        let hall = self.codes[self.sector];
+        let turn = self.turn_in_sector();
+        self.sample(counts, (hall, u16::MAX), turn)
+    }
+
+    /// A sample with a Hall code and ticks, or with an angle.
+    fn sample(&self, counts: [u16; 3], (hall, ticks): (u8, u16), turn: f64) -> Sample {
+        let Some((turns, offset)) = self.angle else {
+            return self.sensed.sample(counts, hall).hall_ticks(ticks);
+        };
+        // Now and then a Hall code, which an angle drive cannot take.
+        if hall > 7 {
+            return self.sensed.sample(counts, hall);
+        }
+        let electrical = (turn * TURN) as i64 as u32;
+        let word = f64::from(electrical.wrapping_sub(offset)) / f64::from(turns);
+        self.sensed.sample_with_angle(counts, word as i64 as u32)
+    }
+
+    /// Electrical angle inside the sector, turns; for angle sensors alone, which leaves other streams as they are.
+    fn turn_in_sector(&mut self) -> f64 {
+        if self.angle.is_none() {
+            return 0.0;
+        }
+        (self.sector as f64 + self.random.f64() - 0.5) / 6.0
     }
 
     /// Takes the drive's answer to the last sample.
@@ -360,6 +388,15 @@ impl Stimulus {
         (self.disturb(code), ticks)
     }
 
+    /// Angle of a random rotor, turns: mostly one that turns, at times one that jumps.
+    fn wandering_turn(&mut self) -> f64 {
+        if self.angle.is_some() && self.random.u8(..8) == 0 {
+            self.random.f64()
+        } else {
+            self.turn_in_sector()
+        }
+    }
+
     /// A Hall code, now and then disturbed for about as many samples as are bridged.
     fn disturb(&mut self, code: u8) -> u8 {
         if self.hall_glitches == 0 {
@@ -396,7 +433,8 @@ impl Stimulus {
                 self.counts_of([a, b, -(a + b)], context)
             }
         };
-        self.sensed.sample(counts, hall).hall_ticks(hall_ticks)
+        let turn = self.wandering_turn();
+        self.sample(counts, (hall, hall_ticks), turn)
     }
 
     /// A count of each sensor.
@@ -439,9 +477,9 @@ impl Stimulus {
             self.codes[sector]
         };
         let counts = [count(0), count(1), count(2)];
-        self.sensed
-            .sample(counts, self.disturb(hall))
-            .hall_ticks(self.age as u16)
+        let hall = self.disturb(hall);
+        let turn = self.motor.turn + jitter / 180.0;
+        self.sample(counts, (hall, self.age as u16), turn)
     }
 
     fn corners(&mut self, context: &Context) -> Sample {
@@ -475,6 +513,7 @@ impl Stimulus {
         let counts = [first, second, third];
         // One above the ADC's range is a corner case, too.
         let counts = counts.map(|count| count.clamp(0, (self.adc_max + 1).min(65_535)) as u16);
-        self.sensed.sample(counts, hall).hall_ticks(hall_ticks)
+        let turn = self.wandering_turn();
+        self.sample(counts, (hall, hall_ticks), turn)
     }
 }

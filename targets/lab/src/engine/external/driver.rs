@@ -48,8 +48,14 @@ fn main() {
                     let adc = [calls.half(), calls.half()];
                     let adc_c = calls.half();
                     let [hall] = calls.bytes();
-                    let sample = Sample::with_hall(adc, hall).third_current(adc_c);
-                    let legs = drive.step(&sample.hall_ticks(calls.half()));
+                    let (ticks, angle) = (calls.half(), calls.word() as u32);
+                    // A sample has either; the other is 0.
+                    let sample = if angle == 0 {
+                        Sample::with_hall(adc, hall).hall_ticks(ticks)
+                    } else {
+                        Sample::with_angle(adc, angle)
+                    };
+                    let legs = drive.step(&sample.third_current(adc_c));
                     for compare in legs.compare() {
                         answers.extend(compare.to_le_bytes());
                     }

@@ -131,6 +131,7 @@ impl Link {
         self.calls.extend(counts.flat_map(u16::to_le_bytes));
         self.calls.push(sample.hall());
         self.calls.extend(sample.ticks().to_le_bytes());
+        self.calls.extend(sample.angle().to_le_bytes());
         self.pending += 1;
     }
 

@@ -124,6 +124,7 @@ fn capture_name(capture: Capture) -> &'static str {
     match capture {
         Capture::Sampled => "sampled",
         Capture::Timer => "timer",
+        Capture::Angle => "angle",
     }
 }
 

@@ -230,6 +230,7 @@ impl<W: Word> Constants<W> {
         let (estimated, filtered) = (variant.estimated(), variant.filtered());
         let advanced = rotor && options.advance > 0.0;
         let clock = HallClock::new(spec);
+        let by_edges = rotor && inverter.angle_turns.is_none();
         let gain = reference_gain(spec);
         let bus = match inverter.bus_sense()? {
             None => None,
@@ -289,11 +290,18 @@ impl<W: Word> Constants<W> {
         let fades = inverter.braking_fade.is_some() || inverter.motoring_fade.is_some();
         Ok(Self {
             parts: Parts::new(&[
-                (Part::Edges, rotor || commutation.is_some() || fades),
-                (Part::Direction, rotor || commutation.is_some() || fades),
-                (Part::Rotor, rotor),
-                (Part::Rise, rotor && clock.tells_rise),
-                (Part::OverSpeed, inverter.over_speed_turn.is_some()),
+                (Part::Edges, by_edges || commutation.is_some() || fades),
+                (
+                    Part::Direction,
+                    by_edges || (!rotor && (commutation.is_some() || fades)),
+                ),
+                (Part::Rotor, by_edges),
+                (Part::Angle, rotor && !by_edges),
+                (Part::Rise, by_edges && clock.tells_rise),
+                (
+                    Part::OverSpeed,
+                    inverter.over_speed_turn.is_some() || inverter.over_speed_step.is_some(),
+                ),
                 (Part::Speed, variant.options.has_speed_loop()),
                 (Part::Ramp, variant.options.acceleration_limit > 0.0),
                 (Part::Slew, variant.options.slew_rate > 0.0),
@@ -376,12 +384,12 @@ impl<W: Word> Constants<W> {
                 two_v * gain / w / motor.torque_constant / 65_536.0,
             )?,
             k_advance: scale.only_if(advanced, "k_advance", options.advance)?,
-            k_ticks: if rotor && inverter.ticks.fract() != 0.0 {
+            k_ticks: if by_edges && inverter.ticks.fract() != 0.0 {
                 Some(scale.coefficient("k_ticks", inverter.ticks)?)
             } else {
                 None
             },
-            rise: if rotor && clock.tells_rise {
+            rise: if by_edges && clock.tells_rise {
                 Some(Rise::new(scale, &clock)?)
             } else {
                 None

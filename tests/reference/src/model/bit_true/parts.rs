@@ -6,6 +6,7 @@ pub enum Part {
     Edges,
     Direction,
     Rotor,
+    Angle,
     Rise,
     OverSpeed,
     Speed,

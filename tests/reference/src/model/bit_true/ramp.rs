@@ -31,7 +31,10 @@ impl Ramp {
         let tick = inverter.t_s / inverter.ticks;
         let speed = TAU / (pow2(SPEED_BITS) * tick * f64::from(spec.motor.pole_pairs));
         let from_speed = pow2(scale.signed_bits("speed_in_force")? - SPEED_BITS);
-        let measured = ((pow2(SPEED_BITS) - 1.0) / f64::from(inverter.rev_min)).floor();
+        let measured = match inverter.angle_turns {
+            None => ((pow2(SPEED_BITS) - 1.0) / f64::from(inverter.rev_min)).floor(),
+            Some(_) => f64::from(inverter.turn_max),
+        };
         let fastest = measured.max((inverter.omega_max / speed).ceil() + 1.0);
         let unit = speed / from_speed;
         let step = round_half_up(limit * inverter.t_s / unit);

@@ -67,6 +67,41 @@ impl<W: Word> Rise<W> {
     }
 }
 
+/// The angle of a sensor, after `timing` has followed the sample.
+#[inline]
+pub fn sensed<W: Word>(
+    k: &Constants<W>,
+    timing: &HallTiming<W>,
+    theta: f64,
+    sector: usize,
+) -> Angle<W> {
+    let theta = word(theta);
+    Angle {
+        theta,
+        speed: Speed {
+            omega: timing.step * timing.direction,
+            rise: word(0.0),
+            step: timing.step,
+        },
+        sector_eff: advanced(k, timing, (theta, timing.step), sector),
+    }
+}
+
+/// The sector with its advance; the present one while the speed is unknown.
+#[inline]
+fn advanced<W: Word>(
+    k: &Constants<W>,
+    timing: &HallTiming<W>,
+    (theta, step): (W, W),
+    sector: usize,
+) -> usize {
+    if !k.advanced || timing.edges != 2 {
+        return sector;
+    }
+    let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
+    to_index(floor(ahead * 6.0 * pow2(-32))) + 1
+}
+
 /// The angle after `state.timing` has followed the sample.
 #[inline]
 pub fn angle<W: Word>(
@@ -109,12 +144,7 @@ pub fn angle<W: Word>(
         -progress + last
     };
     let theta = wrap32(in_sector + start);
-    let sector_eff = if k.advanced && turning {
-        let ahead = wrap32(theta + k.k_advance.mul(speed.step) + TWELFTH);
-        to_index(floor(ahead * 6.0 * pow2(-32))) + 1
-    } else {
-        event.sector
-    };
+    let sector_eff = advanced(k, timing, (theta, speed.step), event.sector);
     Angle {
         theta,
         speed,

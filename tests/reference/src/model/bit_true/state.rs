@@ -212,6 +212,11 @@ macro_rules! for_each_word {
             }
             $show!("step_angle", $state.speed.step);
         }
+        if $parts.has(Part::Angle) {
+            $show!("theta_prev", $state.timing.theta_prev);
+            $show!("angles", $state.timing.edges);
+            $show!("step_angle", $state.timing.step);
+        }
         if $parts.has(Part::OverSpeed) {
             $show!("over_speed_count", $state.timing.too_fast);
         }

@@ -1,0 +1,99 @@
+//! What tells the rotor's position: Hall sensors, or an angle in every sample.
+
+use super::motor::Motor;
+use crate::diagnostics::{Collector, catalogue};
+use crate::spec::reader::Reader;
+use crate::spec::{AngleDirection, AngleSensor, RotorSource};
+
+/// Default of the bits that an angle sensor resolves: a coarse one, whose speed needs the most filtering.
+const BITS: u32 = 12;
+
+/// Fields of the angle sensor.
+const OF_ANGLE: [&str; 4] = [
+    "angle_pole_pairs",
+    "angle_offset",
+    "angle_direction",
+    "angle_bits",
+];
+
+/// Refuses fields that have an effect only with another source of the position.
+pub(super) fn refuse(
+    reader: &Reader,
+    names: &[&'static str],
+    source: RotorSource,
+    errors: &mut Collector,
+) {
+    let setting = match source {
+        RotorSource::Halls => "rotor: halls",
+        RotorSource::Angle => "rotor: angle",
+    };
+    for name in names {
+        if let Some(field) = reader.field(name) {
+            let (at, given) = (&field.location, field.value.to_string());
+            errors.push(catalogue::needless_field(at, name, &given, setting));
+        }
+    }
+}
+
+/// The source of the position, and the angle sensor. Of the latter none with Hall sensors, and together with an error.
+pub(super) fn read(
+    reader: &Reader,
+    pole_pairs: Option<u32>,
+    errors: &mut Collector,
+) -> (RotorSource, Option<AngleSensor>) {
+    let source = reader
+        .choice(errors, "rotor", &[])
+        .unwrap_or(RotorSource::Halls);
+    if source == RotorSource::Halls {
+        refuse(reader, &OF_ANGLE, RotorSource::Angle, errors);
+        return (source, None);
+    }
+    refuse(reader, &["hall_codes", "hall_angles"], RotorSource::Halls, errors);
+    (source, sensor(reader, pole_pairs, errors))
+}
+
+fn sensor(
+    reader: &Reader,
+    pole_pairs: Option<u32>,
+    errors: &mut Collector,
+) -> Option<AngleSensor> {
+    const PAIRS: &str = "angle_pole_pairs";
+    let is_given = |name| reader.field(name).is_some();
+    let pairs = reader.integer(errors, PAIRS);
+    let offset = reader.plain_quantity(errors, "angle_offset");
+    let direction = reader.choice(errors, "angle_direction", &[]);
+    let bits = reader.integer(errors, "angle_bits");
+    let is_read = pairs.is_some() == is_given(PAIRS)
+        && offset.is_some() == is_given("angle_offset")
+        && direction.is_some() == is_given("angle_direction")
+        && bits.is_some() == is_given("angle_bits");
+    let pairs = pairs.unwrap_or(1);
+    if let Some(all) = pole_pairs
+        && all % pairs != 0
+    {
+        let part = reader.part(PAIRS, String::new);
+        errors.push(catalogue::angle_pole_pairs(&part.location, pairs, all));
+        return None;
+    }
+    let sign = match direction.unwrap_or(AngleDirection::Forward) {
+        AngleDirection::Forward => 1,
+        AngleDirection::Backward => -1,
+    };
+    is_read.then(|| AngleSensor {
+        turns: sign * pairs as i32,
+        offset_deg: offset.map_or(0.0, |given| given.si),
+        bits: bits.unwrap_or(BITS),
+    })
+}
+
+/// Refuses the inverter's and the controller's fields of Hall sensors beside an angle sensor.
+pub(super) fn refuse_halls(
+    reader: &Reader,
+    motor: &Motor,
+    names: &[&'static str],
+    errors: &mut Collector,
+) {
+    if motor.rotor == RotorSource::Angle {
+        refuse(reader, names, RotorSource::Halls, errors);
+    }
+}
