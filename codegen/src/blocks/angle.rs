@@ -56,7 +56,8 @@ impl<'b> AngleWords<'b> {
         let (seen, step) = (self.angles.read(), self.step_angle.read());
         named! {
             let turned = theta.angle_sub(self.theta_prev.read()).within(most);
-            let filtered = step + ((turned - step) >> l.spec.speed_filter(self.sensor));
+            // Intervals do not show that it lies between the two.
+            let filtered = (step + ((turned - step) >> l.spec.speed_filter(self.sensor))).within(most);
             let first = seen.is(1).choose(turned, 0);
             let step_angle_next = seen.is(2).choose(filtered, first);
             let angles_next = (seen + 1).min(2);

@@ -114,6 +114,8 @@ pub struct Front<'b> {
 struct Tracked<'b> {
     sample: Sample<'b>,
     hall: Option<Hall<'b>>,
+    /// The sector seen; where edges or an advance need it.
+    sector: Option<Expr<'b>>,
     rotor: Option<Rotor<'b>>,
     /// Direction of rotation, 1 or -1, 0 before the first edge; if the law uses it.
     direction: Option<Expr<'b>>,
@@ -179,10 +181,9 @@ impl<'b> CurrentLoop<'_, 'b> {
         let tracked = self.track(&words);
         l.b.end_tracking();
         let currents = third_current(l, &tracked.sample);
-        let sector_seen = match &tracked.hall {
-            Some(hall) => hall.sector,
-            None => sector_of(l, &tracked.sample),
-        };
+        let sector_seen = tracked
+            .sector
+            .unwrap_or_else(|| sector_of(l, &tracked.sample));
         let sector = tracked.ahead.unwrap_or(sector_seen);
         let demand = self.demand(set_point, &words, &tracked);
         let j = demand.j;
@@ -282,6 +283,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let mut tracked = Tracked {
             sample,
             hall,
+            sector: hall.map(|hall| hall.sector),
             rotor: None,
             direction: None,
             kept: None,
@@ -318,10 +320,12 @@ impl<'b> CurrentLoop<'_, 'b> {
     /// What the rotor's angle and speed tell.
     fn follow_rotor(&self, tracked: &mut Tracked<'b>, rotor: Rotor<'b>) {
         let (l, advance) = (self.l, self.options.advance);
-        tracked.ahead = (advance > 0.0).then(|| {
-            let seen = tracked.hall.map_or_else(|| sector_of(l, &tracked.sample), |hall| hall.sector);
-            advanced_sector(l, advance, seen, &rotor)
-        });
+        if advance > 0.0 {
+            let sector = tracked.sector;
+            let seen = sector.unwrap_or_else(|| sector_of(l, &tracked.sample));
+            tracked.sector = Some(seen);
+            tracked.ahead = Some(advanced_sector(l, advance, seen, &rotor));
+        }
         tracked.direction = Some(rotor.direction);
         tracked.rotor = Some(rotor);
     }

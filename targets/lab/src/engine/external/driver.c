@@ -38,8 +38,12 @@ static void step(drive_type *drive)
     const uint16_t adc_c = (uint16_t)bytes(2);
     const uint16_t hall = (uint16_t)bytes(1);
     const uint16_t hall_ticks = (uint16_t)bytes(2);
-    const hexagen_sample counts = hexagen_with_third(hexagen_with_hall(adc_a, adc_b, hall), adc_c);
-    const hexagen_sample sample = hexagen_with_ticks(counts, hall_ticks);
+    const uint32_t angle = bytes(4);
+    /* A sample has either; the other is 0. */
+    const hexagen_sample rotor = angle == 0U
+        ? hexagen_with_ticks(hexagen_with_hall(adc_a, adc_b, hall), hall_ticks)
+        : hexagen_with_angle(adc_a, adc_b, angle);
+    const hexagen_sample sample = hexagen_with_third(rotor, adc_c);
     const hexagen_legs legs = CALL(step)(drive, &sample);
     const hexagen_status status = CALL(status)(drive);
     for (int leg = 0; leg < 3; leg++) {
