@@ -300,6 +300,16 @@ const LOOSE: &[Row] = &[
                     ("inverter", "hall_glitches", "1"),
                 ],
             ),
+            // In place of Hall sensors.
+            (
+                "angle",
+                &[
+                    ("motor", "rotor", "\"angle\""),
+                    ("motor", "angle_direction", "\"backward\""),
+                    ("motor", "angle_offset", "\"-73.5 deg\""),
+                    ("motor", "angle_bits", "14"),
+                ],
+            ),
         ],
     ),
     (
@@ -649,6 +659,11 @@ impl Kind {
                     _ => text(setting),
                 };
             }
+        }
+        // With an angle nothing is to be said of edges.
+        if document["motor"].get("rotor").is_some() {
+            let controller = document["controller"].as_table_like_mut();
+            controller.expect("a table").remove("hall_capture");
         }
         if let Some(name) = type_name {
             document["motor"]["name"] = text(&format!("\"{name}\""));

@@ -9,9 +9,9 @@ use crate::edges::{self, Watched};
 use crate::equality::{Comparisons, seek_zero};
 use crate::set::Set;
 use fastrand::Rng;
-use hexagen::{Limits, Sample, Sensors, Supervisor};
+use hexagen::{AngleSensor, Limits, Sample, Sensors, Supervisor};
 use hexagen_codegen::pipeline::Generated;
-use hexagen_lab::{limits, sensors};
+use hexagen_lab::{angle, limits, sensors};
 use hexagen_reference::{BitTrue, HallCapture, SensedPhases, Spec};
 
 /// The words of the rotor's speed, zero while it is unknown.
@@ -46,6 +46,7 @@ pub struct States<'a> {
     ticks: i32,
     timer: bool,
     over_speed_turn: Option<i32>,
+    angle: Option<AngleSensor>,
     /// Bus voltage, volt.
     v_bus: f64,
 }
@@ -95,6 +96,7 @@ impl<'a> States<'a> {
             ticks: inverter.ticks as i32,
             timer: inverter.hall_capture == HallCapture::Timer,
             over_speed_turn: inverter.over_speed_turn.map(|ticks| ticks as i32),
+            angle: angle(&generated.interface.limits),
             v_bus: inverter.v_bus,
         }
     }
@@ -211,7 +213,10 @@ impl<'a> States<'a> {
         }
         let is_slow = self.random.u8(..16) == 0;
         let counts = self.fill_currents(words, is_slow);
-        let sample = self.sensed.sample(counts, hall).hall_ticks(hall_ticks);
+        let sample = match self.angle {
+            None => self.sensed.sample(counts, hall).hall_ticks(hall_ticks),
+            Some(_) => self.turned(words, counts),
+        };
         if is_slow {
             self.slow_down(words);
         }
@@ -224,6 +229,23 @@ impl<'a> States<'a> {
         self.respect_invariants(words);
         self.end_calibration(words, sample);
         sample
+    }
+
+    /// A sample with an angle, mostly about as far from the last one as the rotor turned before.
+    fn turned(&mut self, words: &[i32], counts: [u16; 3]) -> Sample {
+        let any = self.random.u32(..);
+        let places = ["theta_prev", "step_angle"].map(|name| self.place(name));
+        let (Some(sensor), [Some(before), Some(step)]) = (self.angle, places) else {
+            return self.sensed.sample_with_angle(counts, any);
+        };
+        let near = match self.random.u8(..4) {
+            0 => any as i32,
+            1 => self.random.i32(-64..=64),
+            _ => words[step].saturating_add((any as i32) >> 8),
+        };
+        let theta = words[before].wrapping_add(near) as u32;
+        let word = f64::from(theta.wrapping_sub(sensor.offset) as i32) / f64::from(sensor.turns);
+        self.sensed.sample_with_angle(counts, word as i64 as u32)
     }
 
     /// A rotor that has been in its sector for about half of its last turn: then it is lost.

@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 26] = [
+const VARIANTS: [(&str, &str, Fields); 27] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -115,6 +115,18 @@ const VARIANTS: [(&str, &str, Fields); 26] = [
         "pdcc.over-speed",
         "pdcc:reference=quasi_square,emf=estimated",
         &[("inverter", "over_speed", "2600 rpm")],
+    ),
+    (
+        "pdcc.angle",
+        "pdcc",
+        &[
+            ("motor", "rotor", "angle"),
+            ("motor", "angle_pole_pairs", "4"),
+            ("motor", "angle_offset", "37 deg"),
+            ("motor", "angle_direction", "backward"),
+            ("motor", "angle_bits", "14"),
+            ("inverter", "over_speed", "2600 rpm"),
+        ],
     ),
     (
         "fcs-mpc.all",
