@@ -1,6 +1,9 @@
 //! The torque of the default drive in fast acceleration: between Hall edges the angle follows the speed of the
-//! coming sector, not that of the last turn.
+//! coming sector, not that of the last turn; of an encoder's angles the filter of the speed is fast enough.
 
+mod encoder;
+
+use encoder::with_encoder;
 use hexagen_lab::closed_loop::ClosedLoop;
 use hexagen_lab::engine::{Model, MotorSource, Prepared, library, plant_of, prepare, run_of};
 use hexagen_lab::plant::{Mechanics, Plant};
@@ -63,19 +66,25 @@ fn the_torque_lasts_in_fast_acceleration() {
     let found: Vec<Option<String>> = library()
         .par_iter()
         .flat_map_iter(|motor| {
-            let source = MotorSource::from(motor);
-            let drive = prepare(&source, Some("pdcc")).expect("generates");
-            let of = |sign: f64| {
-                let (share, turns) = torque(&drive, sign);
-                let text = format!("{} {sign}: {share:.4} in {turns:.1} turns", motor.name);
+            let drive = prepare(&MotorSource::from(motor), Some("pdcc")).expect("generates");
+            let encoder = with_encoder(motor.name, drive.spec.motor.pole_pairs);
+            let encoder = prepare(&encoder, Some("pdcc")).expect("generates");
+            let of = |(drive, sensor, sign): (&Prepared, &str, f64)| {
+                let (share, turns) = torque(drive, sign);
+                let name = motor.name;
+                let text = format!("{name} {sensor} {sign}: {share:.4} in {turns:.1} turns");
                 println!("{text}");
                 let is_right = share >= LEAST || AT_BUS.contains(&motor.name);
                 (turns > FEWEST).then(|| (!is_right).then_some(text))
             };
-            [1.0, -1.0].into_iter().filter_map(of).collect::<Vec<_>>()
+            let runs = [(&drive, "Halls"), (&encoder, "encoder")];
+            let runs = runs.into_iter().flat_map(|(drive, sensor)| {
+                [1.0, -1.0].map(|sign| (drive, sensor, sign))
+            });
+            runs.filter_map(of).collect::<Vec<_>>()
         })
         .collect();
-    assert!(found.len() >= 28, "{} runs", found.len());
+    assert!(found.len() >= 56, "{} runs", found.len());
     let wrong: Vec<String> = found.into_iter().flatten().collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }

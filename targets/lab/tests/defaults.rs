@@ -1,10 +1,12 @@
 //! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
 
+mod encoder;
 mod exact;
 
+use encoder::with_encoder;
 use exact::least_ripple;
 use hexagen_codegen::design::Envelope;
-use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
+use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, prepare};
 use hexagen_lab::motors::{
     FreeStart, Limit, RatedPoint, SPEEDS, can_be_right, degrees_per_period, greatest_ripple,
 };
@@ -167,6 +169,16 @@ fn prepared(motors: &[SelectedMotor]) -> Vec<Prepared> {
 fn every_library_motor_is_right_by_default() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     check(&prepared(&motors), &LIBRARY);
+}
+
+#[test]
+fn every_library_motor_is_right_with_an_encoder() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
+    let drives = prepared(&motors).into_iter().map(|drive| {
+        let source = with_encoder(&drive.motor, drive.spec.motor.pole_pairs);
+        prepare(&source, Some("pdcc")).expect("generates")
+    });
+    check(&drives.collect::<Vec<_>>(), &LIBRARY);
 }
 
 /// Motors of other makers, on which nothing is tuned.

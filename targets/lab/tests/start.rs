@@ -1,5 +1,8 @@
 //! Control begins on a turning rotor: without a trip up to the speed stated by the type.
 
+mod encoder;
+
+use encoder::with_encoder;
 use hexagen_codegen::interface::PublicValue;
 use hexagen_codegen::spec::BusSource;
 use hexagen_lab::closed_loop::{ClosedLoop, Recorder, Step, Trip};
@@ -93,7 +96,16 @@ struct Case {
 impl Case {
     /// `None` if the variant is invalid for the motor.
     fn new(motor: &str, variant: &str, bus: Bus, trip: Option<f64>) -> Option<Self> {
-        let mut source = MotorSource::of_library(motor).expect("is in the library");
+        let source = MotorSource::of_library(motor).expect("is in the library");
+        Self::of((motor, source), variant, bus, trip)
+    }
+
+    fn of(
+        (motor, mut source): (&str, MotorSource),
+        variant: &str,
+        bus: Bus,
+        trip: Option<f64>,
+    ) -> Option<Self> {
         let inverter = prepare(&source, Some("pdcc")).ok()?.spec.inverter;
         let mut fields = String::new();
         if !matches!(bus, Bus::Fixed) {
@@ -268,14 +280,18 @@ fn overshoot(drive: &Prepared, rpm: f64, sign: f64) -> Result<f64, Trip> {
 #[test]
 fn a_start_with_the_rated_torque_takes_at_most_half_of_it_more() {
     let motors = library();
-    let cases = motors
-        .iter()
-        .flat_map(|motor| MODELLING.map(|law| (motor.name, law)));
-    let cases: Vec<_> = cases.collect();
+    let cases = motors.iter().flat_map(|motor| {
+        MODELLING.map(|law| [(motor.name, law, false), (motor.name, law, true)])
+    });
+    let cases: Vec<_> = cases.flatten().collect();
     let outcomes: Vec<(String, Result<f64, Trip>)> = cases
         .par_iter()
-        .filter_map(|&(motor, law)| {
-            let case = Case::new(motor, law, Bus::Fixed, None)?;
+        .filter_map(|&(motor, law, has_encoder)| {
+            let mut case = Case::new(motor, law, Bus::Fixed, None)?;
+            if has_encoder {
+                let source = with_encoder(motor, case.drive.spec.motor.pole_pairs);
+                case = Case::of((motor, source), law, Bus::Fixed, None)?;
+            }
             let spec = &case.drive.spec;
             let from = spec.waiting_speed().expect("it waits") * 60.0 / TAU;
             Some((case, from))
