@@ -28,9 +28,11 @@ impl AngleSensor {
     pub const fn resolve(&self, sample: &Sample) -> Sample {
         let turned = sample.angle.wrapping_mul(self.turns as u32);
         let angle = turned.wrapping_add(self.offset);
-        let sector = ((angle.wrapping_add(Self::HALF_SECTOR) >> 16) * 6) >> 16;
+        // Six sectors, four bits of a code: no overflow, which also a build that is not optimised must see.
+        let upper = angle.wrapping_add(Self::HALF_SECTOR) >> 16;
+        let sector = upper.wrapping_mul(6) >> 16;
         let hall = if sample.hall == 0 {
-            ((Self::CODES >> (4 * sector)) & 7) as u8
+            (Self::CODES.wrapping_shr(sector << 2) & 7) as u8
         } else {
             7
         };

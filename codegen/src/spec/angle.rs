@@ -32,7 +32,7 @@ pub struct AngleSensor {
 }
 
 /// The filter lets a step of the sensor change the speed by no more than this share of the rated one.
-const STEP_SHARE: f64 = 0.01;
+const STEP_SHARE: f64 = 0.002;
 
 /// Greatest base-2 logarithm of the filter's time constant in periods: a slower filter would tell the speed of a
 /// rotor late that speeds up.
