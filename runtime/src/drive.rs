@@ -324,7 +324,9 @@ fn rest<C: Control>(
     sample: Sample,
 ) -> ControlFlow<C::Command, Checked> {
     let was_tripped = core.supervisor.fault();
-    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, &seen::<C>(&sample));
+    let (checked, rest) = core
+        .supervisor
+        .rest(&C::LIMITS, &C::SENSORS, &seen::<C>(&sample));
     if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
         keep(set_point, core, sample, fault);
     }

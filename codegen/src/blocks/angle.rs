@@ -52,7 +52,11 @@ impl<'b> AngleWords<'b> {
             ],
         );
         let doc = "Greatest difference of two angles that is believed: beyond the greatest speed.";
-        let most = l.number("turn_max", i64::from(l.spec.greatest_turn(self.sensor)), doc);
+        let most = l.number(
+            "turn_max",
+            i64::from(l.spec.greatest_turn(self.sensor)),
+            doc,
+        );
         let (seen, step) = (self.angles.read(), self.step_angle.read());
         named! {
             let turned = theta.angle_sub(self.theta_prev.read()).within(most);

@@ -39,7 +39,10 @@ pub fn sample<'b>(l: &Lowering<'b>) -> Sample<'b> {
     let codes = Interval::new(0, 6);
     let doc = "Hall code, Ha in bit 2; 0 in a period at rest without a valid code.";
     let hall = l.b.input("hall", codes, doc);
-    let is_timed = matches!(l.spec.inverter.rotor_sensing, RotorSensing::TimedHalls { .. });
+    let is_timed = matches!(
+        l.spec.inverter.rotor_sensing,
+        RotorSensing::TimedHalls { .. }
+    );
     let hall_ticks = is_timed.then(|| {
         let ticks = Interval::new(0, i64::from(u16::MAX));
         let doc = "Ticks of a clock of `HALL_TIMER_HZ` from the last Hall edge to this sample, at most 65535.";

@@ -27,7 +27,9 @@ impl<'b> OverSpeedWatch<'b> {
     pub fn new(l: &Lowering<'b>) -> Option<Self> {
         let (speed, turn) = (l.spec.inverter.over_speed?, l.spec.over_speed_turn()?);
         let doc = match l.spec.angle_sensor() {
-            None => "Hall edges in a row at which the last turn was shorter than at the over-speed.",
+            None => {
+                "Hall edges in a row at which the last turn was shorter than at the over-speed."
+            }
             Some(_) => "Periods in a row in which the rotor turned faster than at the over-speed.",
         };
         let range = Interval::new(0, i64::from(OVER_SPEED_EDGES));

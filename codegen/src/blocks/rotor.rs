@@ -320,7 +320,9 @@ impl<'b> RotorWords<'b> {
         let ticks = PeriodTicks::of(l.spec.inverter.rotor_sensing);
         let doc = match hall_ticks {
             None => "Time since the last Hall edge, in half periods.",
-            Some(_) => "Time since the last Hall edge, in ticks of the edge timer. A count that belongs to the other side of an edge than the code is rejected.",
+            Some(_) => {
+                "Time since the last Hall edge, in ticks of the edge timer. A count that belongs to the other side of an edge than the code is rejected."
+            }
         };
         l.b.stage("age_edge", &[doc]);
         named! {

@@ -6,7 +6,7 @@ use super::{Description, Period};
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, significant};
 use crate::interface::{PublicConstant, PublicValue};
-use crate::spec::{RotorSensing, InverterSpec, Spec};
+use crate::spec::{InverterSpec, RotorSensing, Spec};
 use nalgebra::Vector2;
 
 /// All constants; `accuracy`: the proven error bounds.

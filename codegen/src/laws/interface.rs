@@ -9,12 +9,12 @@ use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale};
 use crate::design::Envelope;
 use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
-    AngleSensor, Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors, ThirdSensor,
-    Unit, Units, Watch,
+    AngleSensor, Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors,
+    ThirdSensor, Unit, Units, Watch,
 };
 use crate::scaling::Scaled;
 use crate::spec::{
-    self, CurrentSensing, RotorSensing, InverterSpec, Origins, Rule, Spec, SpeedLoop,
+    self, CurrentSensing, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
 };
 use std::f64::consts::TAU;
 

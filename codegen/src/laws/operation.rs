@@ -6,7 +6,7 @@ use crate::blocks::OVER_SPEED_EDGES;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
 use crate::spec::{
-    BusCurrents, BusSource, CurrentSensor, CurrentSum, RotorSensing, InverterSpec, SensedPhases,
+    BusCurrents, BusSource, CurrentSensor, CurrentSum, InverterSpec, RotorSensing, SensedPhases,
     Spec,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
@@ -96,11 +96,20 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
     ];
     if spec.angle_sensor().is_none() {
         let codes = spec.motor.hall_codes.map(|code| format!("{code:03b}"));
-        lines.push(format!("| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |", codes.join(" | ")));
+        lines.push(format!(
+            "| Hall code `Ha Hb Hc`, Ha in bit 2 | {} |",
+            codes.join(" | ")
+        ));
     }
     lines.extend([
-        format!("| current into, out of phase (positive set-point) | {} |", pairs().join(" | ")),
-        format!("| begins at (forward, `theta_e`) | {} |", angles.join(" | ")),
+        format!(
+            "| current into, out of phase (positive set-point) | {} |",
+            pairs().join(" | ")
+        ),
+        format!(
+            "| begins at (forward, `theta_e`) | {} |",
+            angles.join(" | ")
+        ),
         String::new(),
         "More: `hexagen::conventions`.".to_owned(),
     ]);
@@ -158,8 +167,16 @@ fn start(spec: &Spec, design: &LoopDesign) -> String {
         periods => format!(
             "A start keeps all legs off until {} in one direction tell the {}, and for {} where the rotor \
              stands or turns slowly; control may begin at up to {speed} rpm{told}.",
-            if spec.angle_sensor().is_some() { "two sectors" } else { "two Hall edges" },
-            if spec.angle_sensor().is_some() { "speed" } else { "angle" },
+            if spec.angle_sensor().is_some() {
+                "two sectors"
+            } else {
+                "two Hall edges"
+            },
+            if spec.angle_sensor().is_some() {
+                "speed"
+            } else {
+                "angle"
+            },
             engineering(f64::from(periods) * spec.inverter.t_s, "s")
         ),
     }

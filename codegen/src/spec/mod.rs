@@ -51,8 +51,8 @@ pub use harmonics::{Harmonics, ORDERS};
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};
 pub use model::{
-    BUS_FRESH, BusCurrents, BusSource, EmfShape, Fade, HALL_ANGLES, RotorSensing, InverterSpec,
-    MotorSpec, Spec,
+    BUS_FRESH, BusCurrents, BusSource, EmfShape, Fade, HALL_ANGLES, InverterSpec, MotorSpec,
+    RotorSensing, Spec,
 };
 pub use option_texts::help as option_help;
 pub use rule::Rule;

@@ -4,8 +4,8 @@
 //! the checks. Resistances, inductances and EMF constants are per phase of the equivalent star.
 
 use crate::spec::{
-    AngleSensor, ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, Harmonics, RATIO_BITS,
-    SensedPhases,
+    AngleSensor, ControllerSpec, CurrentSensing, CurrentSensor, CurrentSum, EmfSource, Harmonics,
+    RATIO_BITS, SensedPhases,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
 

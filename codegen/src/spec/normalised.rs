@@ -3,7 +3,7 @@
 
 use super::words::Words;
 use super::{
-    BusCurrents, BusSource, CurrentSensing, EmfShape, RotorSensing, InverterSpec, MotorSpec,
+    BusCurrents, BusSource, CurrentSensing, EmfShape, InverterSpec, MotorSpec, RotorSensing,
     SensedPhases, SensingTimes, Spec,
 };
 use crate::spec::ControllerSpec;
@@ -229,8 +229,8 @@ impl Text {
 mod tests {
     use crate::spec::{
         BusCurrents, BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor,
-        Discretisation, EmfShape, EmfSource, HALL_ANGLES, RotorSensing, InverterSpec, LimitRule,
-        LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, SensedPhases, SensingTimes, Spec,
+        Discretisation, EmfShape, EmfSource, HALL_ANGLES, InverterSpec, LimitRule, LoopOptions,
+        Modulation, MotorSpec, PdccSpec, Reference, RotorSensing, SensedPhases, SensingTimes, Spec,
     };
 
     fn hub_drive() -> Spec {

@@ -296,6 +296,18 @@ impl<'g> Recorder<'g> {
         self.host.subject.set_state_words(words);
     }
 
+    /// The sample that a record holds: of an angle the upper bits, and with an angle sensor nothing else.
+    fn recorded(&self, sample: Sample) -> Sample {
+        let [adc_a, adc_b, adc_c] = sample.adc();
+        match self.host.drive.spec.angle_sensor() {
+            None => sample,
+            Some(_) => {
+                let angle = sample.angle() & !0xff;
+                Sample::with_angle([adc_a, adc_b], angle).third_current(adc_c)
+            }
+        }
+    }
+
     /// Fault of the drive.
     pub fn fault(&self) -> Option<Fault> {
         self.host.subject.fault()
@@ -349,6 +361,7 @@ impl Called for Recorder<'_> {
     }
 
     fn step(&mut self, sample: Sample) -> Legs {
+        let sample = self.recorded(sample);
         self.note(Record::Step(sample));
         let legs = self.host.step(sample);
         let fault = self.host.subject.fault();

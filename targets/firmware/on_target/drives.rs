@@ -20,6 +20,9 @@ macro_rules! drives_for {
             TeknicPhcc, step_teknic_m2310p_phcc: "../motors/teknic-m2310p.toml", phcc {};
             TeknicPiPwm, step_teknic_m2310p_pi_pwm: "../motors/teknic-m2310p.toml", pi_pwm {};
 
+            // An encoder in place of Hall sensors.
+            CheetahPdcc, step_mit_mini_cheetah_pdcc: "../motors/mit-mini-cheetah.toml", pdcc {};
+
             HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
 
             // The variants of the cost table's goals, each with the core's word length.

@@ -8,7 +8,8 @@ use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 #[derive(Debug)]
 pub enum StepFn<D> {
     /// Takes the drive, counts of phases a and b, the Hall code, and ticks since the last Hall
-    /// edge; returns its legs as a 64-bit word in registers.
+    /// edge, or in place of these two the upper 24 bits of an angle ([`sample_of`]); returns its legs
+    /// as a 64-bit word in registers.
     Bits(extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs),
     /// Takes the sample and returns the legs in C99's layout, both in the caller's memory.
     Structure(extern "C" fn(&mut D, &SampleInC) -> LegsInC),
@@ -122,6 +123,16 @@ impl Listed {
     }
 }
 
+/// The sample of a drive from a step function's arguments, of which an angle takes two.
+#[inline]
+#[must_use]
+pub const fn sample_of<C: Control>(adc: [u16; 2], hall: u8, hall_ticks: u16) -> Sample {
+    match C::ANGLE {
+        None => Sample::with_hall(adc, hall).hall_ticks(hall_ticks),
+        Some(_) => Sample::with_angle(adc, (hall as u32) << 24 | (hall_ticks as u32) << 8),
+    }
+}
+
 /// Names of the words of a drive: its supervisor's, then its law's.
 #[must_use]
 pub const fn state_names<C: Control>() -> [&'static [&'static str]; 2] {
@@ -160,8 +171,7 @@ macro_rules! drives {
                 hall: u8,
                 hall_ticks: u16,
             ) -> $crate::hexagen::Legs {
-                let sample = $crate::hexagen::Sample::with_hall([adc_a, adc_b], hall);
-                drive.step(&sample.hall_ticks(hall_ticks))
+                drive.step(&$crate::sample_of::<$name>([adc_a, adc_b], hall, hall_ticks))
             }
 
         )*

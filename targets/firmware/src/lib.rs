@@ -23,7 +23,7 @@ mod subject;
 mod supervised;
 pub mod wire;
 
-pub use drives::{Drives, LegsInC, Listed, SampleInC, StepFn, state_names};
+pub use drives::{Drives, LegsInC, Listed, SampleInC, StepFn, sample_of, state_names};
 pub use hexagen;
 pub use registers::Registers;
 pub use subject::Subject;

@@ -1,10 +1,11 @@
 //! A drive with an empty law: the cost of its step is supervision.
 
+use crate::drives::sample_of;
 use core::marker::PhantomData;
 use hexagen::arith::Word;
 use hexagen::{
-    Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation, Sample, Sensors,
-    Units, Words,
+    AngleSensor, Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation,
+    Sensors, Units, Words,
 };
 
 /// The supervisor of `C` around a law without state that pulses all legs.
@@ -26,6 +27,7 @@ impl<C: Control> Control for Supervised<C> {
     const FORMATS: &'static [Format] = &[];
     const LIMITS: Limits = C::LIMITS;
     const SENSORS: Sensors = C::SENSORS;
+    const ANGLE: Option<AngleSensor> = C::ANGLE;
     const UNITS: Units = C::UNITS;
     const SET_POINT: Word = C::SET_POINT;
     const BUS: C::Bus = C::BUS;
@@ -60,5 +62,5 @@ pub extern "C" fn step_supervised<C: Control<Command = Legs>>(
     hall: u8,
     hall_ticks: u16,
 ) -> Legs {
-    drive.step(&Sample::with_hall([adc_a, adc_b], hall).hall_ticks(hall_ticks))
+    drive.step(&sample_of::<C>([adc_a, adc_b], hall, hall_ticks))
 }

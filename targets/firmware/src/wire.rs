@@ -117,6 +117,14 @@ pub enum Record {
     },
 }
 
+/// Hall code and ticks; of an angle the upper 8 and the next 16 bits, which are all that a record holds of it.
+fn registers(sample: Sample) -> (u8, u16) {
+    match sample.angle() {
+        0 => (sample.hall(), sample.ticks()),
+        angle => ((angle >> 24) as u8, (angle >> 8) as u16),
+    }
+}
+
 impl Record {
     /// As bytes.
     #[must_use]
@@ -129,10 +137,11 @@ impl Record {
             Self::New => number(0, 0, 0),
             Self::Step(sample) => {
                 let [adc_a, adc_b, _] = sample.adc();
-                let [t0, t1] = sample.ticks().to_le_bytes();
+                let (hall, ticks) = registers(sample);
+                let [t0, t1] = ticks.to_le_bytes();
                 let [a0, a1] = adc_a.to_le_bytes();
                 let [b0, b1] = adc_b.to_le_bytes();
-                [STEP_RECORD, sample.hall(), t0, t1, a0, a1, b0, b1]
+                [STEP_RECORD, hall, t0, t1, a0, a1, b0, b1]
             }
             Self::SetCurrent(bits) => number(2, bits, 0),
             Self::SetTorque(bits) => number(3, bits, 0),

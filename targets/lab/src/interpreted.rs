@@ -1,7 +1,9 @@
 //! The generator's interpreter as a drive.
 
 use crate::{Inputs, angle, limits, sensors};
-use hexagen::{AngleSensor, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor};
+use hexagen::{
+    AngleSensor, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor,
+};
 use hexagen_codegen::interface::{Interface, Watch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
 use hexagen_reference::Stop;

@@ -38,4 +38,4 @@ pub use inputs::Inputs;
 pub use interpreted::Interpreted;
 pub use progress::Progress;
 pub use readings::{READINGS, Readings};
-pub use tables::{formats, angle, limits, sensors, state_names};
+pub use tables::{angle, formats, limits, sensors, state_names};

@@ -1,6 +1,8 @@
 //! Tables of a generated drive in the types of the runtime.
 
-use hexagen::{AngleSensor, Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor};
+use hexagen::{
+    AngleSensor, Format, Limits, Rounding, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor,
+};
 use hexagen_codegen::interface::{self, FormatEntry};
 use hexagen_codegen::ir::Program;
 use std::collections::BTreeSet;

@@ -78,9 +78,9 @@ fn the_torque_lasts_in_fast_acceleration() {
                 (turns > FEWEST).then(|| (!is_right).then_some(text))
             };
             let runs = [(&drive, "Halls"), (&encoder, "encoder")];
-            let runs = runs.into_iter().flat_map(|(drive, sensor)| {
-                [1.0, -1.0].map(|sign| (drive, sensor, sign))
-            });
+            let runs = runs
+                .into_iter()
+                .flat_map(|(drive, sensor)| [1.0, -1.0].map(|sign| (drive, sensor, sign)));
             runs.filter_map(of).collect::<Vec<_>>()
         })
         .collect();

@@ -280,9 +280,9 @@ fn overshoot(drive: &Prepared, rpm: f64, sign: f64) -> Result<f64, Trip> {
 #[test]
 fn a_start_with_the_rated_torque_takes_at_most_half_of_it_more() {
     let motors = library();
-    let cases = motors.iter().flat_map(|motor| {
-        MODELLING.map(|law| [(motor.name, law, false), (motor.name, law, true)])
-    });
+    let cases = motors
+        .iter()
+        .flat_map(|motor| MODELLING.map(|law| [(motor.name, law, false), (motor.name, law, true)]));
     let cases: Vec<_> = cases.flatten().collect();
     let outcomes: Vec<(String, Result<f64, Trip>)> = cases
         .par_iter()

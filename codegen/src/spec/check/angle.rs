@@ -48,15 +48,16 @@ pub(super) fn read(
         refuse(reader, &OF_ANGLE, RotorSource::Angle, errors);
         return (source, None);
     }
-    refuse(reader, &["hall_codes", "hall_angles"], RotorSource::Halls, errors);
+    refuse(
+        reader,
+        &["hall_codes", "hall_angles"],
+        RotorSource::Halls,
+        errors,
+    );
     (source, sensor(reader, pole_pairs, errors))
 }
 
-fn sensor(
-    reader: &Reader,
-    pole_pairs: Option<u32>,
-    errors: &mut Collector,
-) -> Option<AngleSensor> {
+fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> Option<AngleSensor> {
     const PAIRS: &str = "angle_pole_pairs";
     let is_given = |name| reader.field(name).is_some();
     let pairs = reader.integer(errors, PAIRS);

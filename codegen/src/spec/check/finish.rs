@@ -7,7 +7,7 @@ use super::{currents, relations};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::reader::Reader;
-use crate::spec::{ControllerSpec, CurrentSum, RotorSensing, InverterSpec, SensedPhases};
+use crate::spec::{ControllerSpec, CurrentSum, InverterSpec, RotorSensing, SensedPhases};
 use std::f64::consts::FRAC_PI_3;
 
 /// Default `minimum_speed` over `rated_speed`, and the most that it becomes for a fast Hall timer.

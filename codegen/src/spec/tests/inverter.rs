@@ -3,7 +3,7 @@
 
 use crate::diagnostics::Code;
 use crate::pipeline::{generate, warnings};
-use crate::spec::{BusCurrents, BusSource, RotorSensing, Origins, Spec, check, parse_toml};
+use crate::spec::{BusCurrents, BusSource, Origins, RotorSensing, Spec, check, parse_toml};
 
 const MOTOR: &str = r#"[motor]
 pole_pairs = 4
@@ -112,7 +112,10 @@ fn edge_ticks_may_be_fractions_of_the_period() {
             &inverter,
             "kind = \"pdcc\"\nhall_capture = \"timer\"\nemf = \"model\"",
         );
-        assert_eq!(spec.inverter.rotor_sensing, RotorSensing::TimedHalls { ticks });
+        assert_eq!(
+            spec.inverter.rotor_sensing,
+            RotorSensing::TimedHalls { ticks }
+        );
         assert!(spec.to_toml().contains(&format!("\nticks = {ticks:?}\n")));
         let program = generate(&spec, &origins).expect("generates").graph;
         let constants = &program.program().constants;

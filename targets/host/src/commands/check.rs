@@ -7,7 +7,7 @@ use crate::cli::{DriveArguments, Failure, print_json, print_text, shortened, tel
 use clap::Args;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{CurrentSensing, RotorSensing, Reference, Spec};
+use hexagen_codegen::spec::{CurrentSensing, Reference, RotorSensing, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::text::significant;

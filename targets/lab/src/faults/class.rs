@@ -281,7 +281,11 @@ impl List {
         self.plant(part, "noise of 1 ADC count rms", noise);
         if has_angle {
             let error_deg = PLACED;
-            self.plant(part, "angle sensor 5 deg off", PlantDefect::Angle { error_deg });
+            self.plant(
+                part,
+                "angle sensor 5 deg off",
+                PlantDefect::Angle { error_deg },
+            );
             return;
         }
         for (name, error_deg) in [

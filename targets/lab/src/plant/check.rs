@@ -148,7 +148,12 @@ impl PlantParams {
         if let Some(angle) = self.angle {
             let (turns, bits) = (f64::from(angle.turns), f64::from(angle.bits));
             require(angle.turns != 0, "angle.turns", (turns, ""), "not 0")?;
-            require((1..=32).contains(&angle.bits), "angle.bits", (bits, ""), "1 to 32")?;
+            require(
+                (1..=32).contains(&angle.bits),
+                "angle.bits",
+                (bits, ""),
+                "1 to 32",
+            )?;
         }
         for code in self.hall_codes {
             require(

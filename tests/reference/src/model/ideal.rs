@@ -338,24 +338,23 @@ impl Ideal {
 
         // 4 rotor
         let sector = event.sector;
-        let (theta, step_angle, sector_eff) = if let (true, Some(sensor)) =
-            (self.variant.rotor, self.sensor)
-        {
-            let theta = sensor.theta(sample);
-            let timing = &mut self.state.timing;
-            sensor.follow(timing, theta, |turn| turn * sensor.share);
-            self.sensed(theta, sector)
-        } else if self.variant.rotor {
-            self.state.timing.step(
-                &self.clock,
-                &event,
-                direction_before,
-                f64::from(sample.ticks()),
-            );
-            self.angle(sector)
-        } else {
-            (0.0, 0.0, sector)
-        };
+        let (theta, step_angle, sector_eff) =
+            if let (true, Some(sensor)) = (self.variant.rotor, self.sensor) {
+                let theta = sensor.theta(sample);
+                let timing = &mut self.state.timing;
+                sensor.follow(timing, theta, |turn| turn * sensor.share);
+                self.sensed(theta, sector)
+            } else if self.variant.rotor {
+                self.state.timing.step(
+                    &self.clock,
+                    &event,
+                    direction_before,
+                    f64::from(sample.ticks()),
+                );
+                self.angle(sector)
+            } else {
+                (0.0, 0.0, sector)
+            };
 
         // Slew rate, speed loop
         let (mut current, mut speed_integral) = (self.current, self.state.speed_integral);
