@@ -29,7 +29,9 @@ fn logged(drive: &Prepared) -> (String, Vec<Legs>) {
     let has_timer = drive.generated.interface.timer_capture;
     let third = if sensed.len() == 3 { "adc_3," } else { "" };
     let ticks = if has_timer { "ticks," } else { "" };
-    let mut log = format!("adc_1,adc_2,{third}hall,{ticks}current_a\n");
+    let has_angle = drive.spec.angle_sensor().is_some();
+    let rotor = if has_angle { "angle" } else { "hall" };
+    let mut log = format!("adc_1,adc_2,{third}{rotor},{ticks}current_a\n");
     let mut pending = Legs::OFF;
     let mut commands = Vec::new();
     for period in 0..PERIODS {
@@ -37,7 +39,11 @@ fn logged(drive: &Prepared) -> (String, Vec<Legs>) {
         for phase in sensed {
             let _ = write!(log, "{},", sample.adc()[*phase]);
         }
-        let _ = write!(log, "{},", sample.hall());
+        let _ = if has_angle {
+            write!(log, "{},", sample.angle())
+        } else {
+            write!(log, "{},", sample.hall())
+        };
         if has_timer {
             let _ = write!(log, "{},", sample.ticks());
         }
@@ -73,7 +79,7 @@ fn a_replayed_log_has_the_commands_and_words_of_the_run() {
         ("trivedi-keshri-660w", None, "phcc"),
         ("hoverboard-hub", None, "pi-pwm"),
         ("anaheim-bly172s", Some("st-b-g431b-esc1"), "pdcc"),
-        // Sensors in phases b and c.
+        // An encoder, and current sensors in phases b and c.
         ("odrive-d6374-150kv", None, "pdcc"),
     ] {
         let drive = drive(motor, board, variant);

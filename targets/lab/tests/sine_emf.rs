@@ -15,7 +15,7 @@ fn an_estimated_sine_makes_the_demanded_torque() {
     let motor = MotorSource::of_library("br2804-1700kv").expect("is in the library");
     let mut wrong = vec![];
     for variant in ["word=32", "word=16", "delay=0", "emf_filter=1"] {
-        let variant = format!("pdcc:reference=quasi_square,hall_capture=sampled,{variant}");
+        let variant = format!("pdcc:reference=quasi_square,{variant}");
         let drive = prepare(&motor, Some(&variant)).expect("generates");
         let (plant, demand) = (plant_of(&drive.spec), drive.demand());
         // 3.1, 9.5 and 12.6 electrical degrees per period.

@@ -44,8 +44,13 @@ fn every_library_motor_passes_the_checks() {
 #[test]
 fn every_library_motor_passes_with_captured_edges_and_every_option() {
     for (name, ast) in library() {
+        let capture = match ast.motor.field("rotor") {
+            None => "hall_capture=timer,",
+            Some(_) => "",
+        };
+        let ahead = format!("pdcc:{capture}emf=model,advance=2");
         for variant in [
-            "pdcc:hall_capture=timer,emf=model,advance=2",
+            &ahead,
             "pdcc:modulation=pair,saturation=nearest,word=16,delay=0",
             "pdcc:reference=proportional,discretisation=euler,emf_filter=0.5",
         ] {
