@@ -89,7 +89,7 @@ static inline hexagen_sample hexagen_resolve_angle(
     uint32_t sector;
     resolved.angle = sample->angle * (uint32_t)turns + offset;
     sector = (((resolved.angle + UINT32_C(357913942)) >> 16) * 6U) >> 16;
-    resolved.hall = sample->hall == 0U ? (uint16_t)((codes >> (4U * sector)) & 7U) : 7U;
+    resolved.hall = (uint16_t)(sample->hall == 0U ? (codes >> (4U * sector)) & 7U : 7U);
     return resolved;
 }
 

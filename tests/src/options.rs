@@ -52,6 +52,14 @@ pub type Choice = Vec<usize>;
 /// An independent option with its value, and another option with its value, all by index.
 pub type Meeting = ((usize, usize), (usize, usize));
 
+/// Fields that an angle sensor excludes.
+const OF_HALLS: [(&str, &str); 4] = [
+    ("motor", "hall_codes"),
+    ("motor", "hall_angles"),
+    ("inverter", "hall_glitches"),
+    ("controller", "hall_capture"),
+];
+
 /// Placeholder of a voltage of 1.6 times the motor's bus.
 const BUS_RANGE: &str = "\"bus range\"";
 
@@ -650,6 +658,12 @@ impl Kind {
         document["controller"]["kind"] = text(&format!("\"{}\"", self.name));
         for (axis, &value) in self.axes.iter().zip(choice) {
             for (section, field, setting) in &axis.values[value].settings {
+                // What a motor's file assumes is stated now.
+                if let Some(assumed) = document.get_mut("assumed")
+                    && let Some(table) = assumed[*section].as_table_like_mut()
+                {
+                    table.remove(field);
+                }
                 document[*section][*field] = match setting.as_str() {
                     BUS_RANGE => volts(1.6),
                     FADE => volts(fade),
@@ -660,10 +674,12 @@ impl Kind {
                 };
             }
         }
-        // With an angle nothing is to be said of edges.
+        // With an angle nothing is to be said of Hall sensors.
         if document["motor"].get("rotor").is_some() {
-            let controller = document["controller"].as_table_like_mut();
-            controller.expect("a table").remove("hall_capture");
+            for (section, field) in OF_HALLS {
+                let table = document[section].as_table_like_mut();
+                table.expect("a table").remove(field);
+            }
         }
         if let Some(name) = type_name {
             document["motor"]["name"] = text(&format!("\"{name}\""));

@@ -47,20 +47,23 @@ impl<'b> OverSpeedWatch<'b> {
             rpm(self.speed)
         );
         let turn = l.number("over_speed_turn", i64::from(self.turn), &doc);
-        self.counted(measured & rev.is_below(turn))
-    }
-
-    fn counted(&self, is_over: Flag<'b>) -> Expr<'b> {
-        let more = (self.count.read() + 1).min(OVER_SPEED_EDGES);
+        let more = self.more();
         named! {
-            let over_speed_count_seen = is_over.choose(more, 0);
+            let over_speed_count_seen = (measured & rev.is_below(turn)).choose(more, 0);
         }
         over_speed_count_seen
     }
 
+    fn more(&self) -> Expr<'b> {
+        (self.count.read() + 1).min(OVER_SPEED_EDGES)
+    }
+
     /// Counts a period, in the open stage.
     pub fn count(&self, is_over: Flag<'b>) {
-        self.count.set(self.counted(is_over));
+        named! {
+            let over_speed_count_seen = is_over.choose(self.more(), 0);
+        }
+        self.count.set(over_speed_count_seen);
     }
 
     /// Joins the count of the open guarded stage and sets its state word.

@@ -76,8 +76,10 @@ fn disturbed(drive: &Prepared, codes: [u8; 6]) -> PlantParams {
 #[test]
 fn every_motor_of_the_library_tells_its_codes_and_edges() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("reads");
-    assert_eq!(motors.len(), 16);
-    for (motor, codes) in motors.iter().zip(ORDERS.into_iter().cycle()) {
+    let have_halls = motors.iter().filter(|motor| !motor.has_angle());
+    let motors: Vec<&SelectedMotor> = have_halls.collect();
+    assert_eq!(motors.len(), 12);
+    for (motor, codes) in motors.into_iter().zip(ORDERS.into_iter().cycle()) {
         let drive = motor.prepare(None).expect("generates");
         let name = &drive.motor;
         let log = turned(&drive, disturbed(&drive, codes), 0.15, &STROKES);

@@ -121,6 +121,10 @@ pub fn find(drive: &Prepared, log: impl Read, row_time: f64) -> Result<Halls, Lo
 
 /// The samples of the shorted motor: the longest stretch in which nothing but a `brake` was called.
 fn shorted(spec: &Spec, log: impl Read) -> Result<Vec<Reading>, LogError> {
+    if spec.angle_sensor().is_some() {
+        let error = "the motor has an angle sensor (`rotor: angle`), and no Hall sensors to find";
+        return Err(LogError(error.to_owned()));
+    }
     let mut stretches: Vec<Vec<Reading>> = vec![Vec::new()];
     let mut has_calls = false;
     let mut is_short = true;

@@ -118,6 +118,13 @@ const MOTOR: &[Line] = &[
     .optional(),
     needed(&["nominal_voltage"], "Voltage of the no-load speed.", "48 V").optional(),
     needed(&["inertia"], "Of the rotor; needed for speed control.", "24 g cm2").optional(),
+    needed(
+        &["rotor"],
+        "An encoder or a resolver in place of Hall sensors; then also angle_pole_pairs (those of the motor for a\n\
+         # sensor on the shaft), angle_offset, angle_direction and angle_bits.",
+        "angle",
+    )
+    .optional(),
 ];
 
 const INVERTER: &[Line] = &[
