@@ -22,6 +22,10 @@ pub struct Figures {
     pub supervision: Option<u32>,
     /// Instructions of the worst step in closed loop, except start-up and trips.
     pub worst: u32,
+    /// Instructions of the longest path through the step and its callees, start-up, calibration and
+    /// trips included. Only for drives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest: Option<u32>,
     /// Estimated cycles of the normal path.
     pub cycles: u32,
     /// Bytes of the function's own code.
@@ -99,6 +103,7 @@ mod tests {
             normal: 100,
             supervision: None,
             worst: 301,
+            longest: None,
             cycles: 130,
             code: 400,
             stack: 8,

@@ -49,6 +49,13 @@ pub struct Counts {
     pub cycles: u32,
 }
 
+impl Counts {
+    /// Instructions of the longest step that was counted.
+    pub fn largest(&self) -> u32 {
+        self.worst.max(self.normal).max(self.arbitrary.unwrap_or(0))
+    }
+}
+
 impl Inputs {
     /// Records the inputs of a drive in its own closed loop.
     ///

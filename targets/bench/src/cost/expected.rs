@@ -13,11 +13,12 @@ use std::path::PathBuf;
 pub struct Expected(pub Counted);
 
 /// The figures by name.
-fn named(figures: Figures) -> [(&'static str, u32); 6] {
+fn named(figures: Figures) -> [(&'static str, u32); 7] {
     [
         ("normal path", figures.normal),
         ("supervision", figures.supervision.unwrap_or(0)),
         ("worst path", figures.worst),
+        ("longest path", figures.longest.unwrap_or(0)),
         ("cycles", figures.cycles),
         ("code", figures.code),
         ("stack", figures.stack),
@@ -103,6 +104,7 @@ mod tests {
             normal,
             supervision: Some(normal / 2),
             worst: 100,
+            longest: Some(200),
             cycles: 60,
             code: 200,
             stack: 8,
@@ -125,6 +127,18 @@ mod tests {
                 "step_x: normal path rose from 50 to 52",
                 "step_x: supervision rose from 25 to 26"
             ]
+        );
+        let longest = Some(201);
+        let longer = BTreeMap::from([(
+            "step_x".to_owned(),
+            Figures {
+                longest,
+                ..figures(50)
+            },
+        )]);
+        assert_eq!(
+            expected.rises("rustc 1", &longer, above),
+            ["step_x: longest path rose from 200 to 201"]
         );
         assert_eq!(expected.rises("rustc 2", &of(53), above), [""; 0]);
         assert_eq!(

@@ -100,6 +100,7 @@ mod tests {
             normal: 71,
             supervision: None,
             worst: 116,
+            longest: None,
             cycles: 100,
             code: 1000,
             stack: 64,

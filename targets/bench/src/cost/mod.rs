@@ -6,6 +6,7 @@ mod cycles;
 pub mod elf;
 mod expected;
 mod goals;
+mod longest;
 mod peers;
 
 use crate::BenchError;
@@ -22,6 +23,7 @@ use goals::goal;
 use hexagen_lab::counted::{Counted, Figures};
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};
 use hexagen_lab::reproduction::counted_readings;
+use longest::Program;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -34,6 +36,9 @@ const INTERRUPT_VARIANT: &str = "pdcc:reference=quasi_square,saturation=keep_ang
 
 /// The program with the drives of the paper's experiment.
 const EXPERIMENT: &str = "experiment";
+
+/// The program with the peers.
+const PEERS: &str = "peers";
 
 /// The programs with drives in Rust, whose supervision is counted separately.
 const IN_RUST: [&str; 2] = ["bench", EXPERIMENT];
@@ -60,6 +65,8 @@ impl Options {
 struct Row {
     symbol: String,
     counts: Counts,
+    /// Instructions of the longest path; only for drives.
+    longest: Option<u32>,
     code: Code,
     /// Bytes of tables; `None` for peers, whose tables have no names.
     tables: Option<usize>,
@@ -72,6 +79,7 @@ impl Row {
             normal: self.counts.normal,
             supervision: self.counts.supervision,
             worst: self.counts.worst,
+            longest: self.longest,
             cycles: self.counts.cycles,
             code: self.code.own,
             stack: self.counts.stack,
@@ -122,6 +130,8 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
          supervision: share of the normal path, counted on a drive with the same limits and an empty law: call and return, mode, \
          checks of Hall code, ADCs and currents. The rest is the law. Only for drives in Rust.\n\
          arbitrary: maximum in calibration, in pre-charge, and on arbitrary inputs and calls, which trip the drive; only for drives.\n\
+         longest: instructions of the longest path through the control-flow graph of the function and its callees, paths that never \
+         return left out; behind it, as a multiple of the largest counted step. Only for drives.\n\
          goal: normal / worst / stack of the best version found by editing the emitted text by hand, with the same supervisor.\n\
          code: bytes of the function, and of its callees. state: bytes of the drive's type. stack: bytes, maximum of all steps.\n\
          cycles: estimated for the normal path: load, store 2, of n words 1 + n, taken branch 3, all else 1.\n\
@@ -159,6 +169,7 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
         rows.push(Row {
             symbol: INTERRUPT.to_owned(),
             counts,
+            longest: None,
             code: image.code(INTERRUPT)?,
             tables: None,
             state: None,
@@ -168,10 +179,10 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     firmware.build_peers()?;
     let of_peer = |listed: &Listed| {
         let run = peers::run(&paper, &listed.symbol)?;
-        run.compare(&Emulated(firmware, "peers"), listed)?;
+        run.compare(&Emulated(firmware, PEERS), listed)?;
         Ok((run.inputs, None))
     };
-    rows.extend(rows_of(firmware, "peers", options, of_peer)?);
+    rows.extend(rows_of(firmware, PEERS, options, of_peer)?);
     Ok(rows)
 }
 
@@ -213,34 +224,45 @@ fn rows_of(
     options: &Options,
     inputs_of: impl Fn(&Listed) -> Result<(Inputs, Option<usize>), BenchError> + Sync,
 ) -> Result<Vec<Row>, BenchError> {
-    let image = Image::read(&firmware.elf(program), isa(firmware.target))?;
+    let elf = firmware.elf(program);
+    let image = Image::read(&elf, isa(firmware.target))?;
+    let paths = (program != PEERS).then(|| Program::read(&elf, firmware.target, &image));
+    let paths = paths.transpose()?;
     let mut steps = firmware.drives(program)?;
     steps.retain(|step| options.wants(&step.symbol));
     let row_of = |listed: &Listed| {
         let (inputs, tables) = inputs_of(listed)?;
-        let step = (listed.place, listed.symbol.as_str());
+        let symbol = listed.symbol.as_str();
+        let step = (listed.place, symbol);
         let mut counts = count(firmware, program, &image, step, &inputs)?;
         if IN_RUST.contains(&program) {
             counts.supervision = Some(supervision(firmware, program, listed.place, &inputs)?);
         }
-        row(&image, listed, counts, tables)
+        let longest = paths.as_ref().map(|paths| paths.longest(symbol));
+        let longest = longest.transpose()?;
+        check_longest(symbol, longest, &counts)?;
+        Ok(Row {
+            symbol: symbol.to_owned(),
+            counts,
+            longest,
+            code: image.code(symbol)?,
+            tables,
+            state: Some(listed.size),
+        })
     };
     steps.par_iter().map(row_of).collect()
 }
 
-fn row(
-    image: &Image,
-    listed: &Listed,
-    counts: Counts,
-    tables: Option<usize>,
-) -> Result<Row, BenchError> {
-    Ok(Row {
-        symbol: listed.symbol.clone(),
-        counts,
-        code: image.code(&listed.symbol)?,
-        tables,
-        state: Some(listed.size),
-    })
+/// No step that was counted is longer than the longest path.
+fn check_longest(symbol: &str, longest: Option<u32>, counts: &Counts) -> Result<(), BenchError> {
+    match longest {
+        Some(longest) if longest < counts.largest() => Err(BenchError::Failed(format!(
+            "{symbol}: a step of {} instructions was counted, and the longest path has {longest}: \
+             the search in targets/bench/src/cost/longest misses a path",
+            counts.largest()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Bytes of a drive's tables in flash: entries of the least width that fits their values.
@@ -278,6 +300,8 @@ fn table(target: Target, rows: &[Row]) -> Table {
         "supervision",
         "worst",
         "arbitrary",
+        "longest",
+        "",
         "goal",
         "",
         "cycles",
@@ -300,6 +324,11 @@ fn table(target: Target, rows: &[Row]) -> Table {
             or_dash(counts.supervision.map(|count| count as usize)),
             counts.worst.to_string(),
             or_dash(counts.arbitrary.map(|most| most as usize)),
+            or_dash(row.longest.map(|longest| longest as usize)),
+            row.longest.map_or(String::new(), |longest| {
+                let ratio = f64::from(longest) / f64::from(counts.largest());
+                format!("x {ratio:.2}")
+            }),
             goal,
             verdict.to_owned(),
             counts.cycles.to_string(),
@@ -310,10 +339,45 @@ fn table(target: Target, rows: &[Row]) -> Table {
             counts.stack.to_string(),
         ]);
     }
-    for column in [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12] {
+    for column in [1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12, 13, 14] {
         if let Some(column) = table.column_mut(column) {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_longer_than_the_longest_path_is_an_error() {
+        let counts = Counts {
+            normal: 90,
+            supervision: None,
+            worst: 207,
+            arbitrary: Some(375),
+            stack: 8,
+            cycles: 100,
+        };
+        let checked = |longest| {
+            let checked = check_longest("step_x", longest, &counts);
+            checked.map_err(|error| error.to_string())
+        };
+        assert_eq!(checked(Some(375)), Ok(()));
+        assert_eq!(checked(None), Ok(()));
+        let error = checked(Some(374)).expect_err("a path is missing");
+        assert!(
+            error.starts_with(
+                "step_x: a step of 375 instructions was counted, and the longest path has 374"
+            ),
+            "{error}"
+        );
+        let in_closed_loop = Counts {
+            arbitrary: Some(100),
+            ..counts
+        };
+        assert!(check_longest("step_x", Some(206), &in_closed_loop).is_err());
+    }
 }

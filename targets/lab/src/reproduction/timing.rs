@@ -45,6 +45,7 @@ mod tests {
             normal: 100,
             supervision: None,
             worst: 200,
+            longest: None,
             cycles: 144,
             code: 400,
             stack: 8,
