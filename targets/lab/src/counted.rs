@@ -26,6 +26,9 @@ pub struct Figures {
     /// trips included. Only for drives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest: Option<u32>,
+    /// The same of a step that controls. Only for drives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_in_control: Option<u32>,
     /// Estimated cycles of the normal path.
     pub cycles: u32,
     /// Bytes of the function's own code.
@@ -104,6 +107,7 @@ mod tests {
             supervision: None,
             worst: 301,
             longest: None,
+            longest_in_control: None,
             cycles: 130,
             code: 400,
             stack: 8,

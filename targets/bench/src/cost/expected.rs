@@ -13,12 +13,16 @@ use std::path::PathBuf;
 pub struct Expected(pub Counted);
 
 /// The figures by name.
-fn named(figures: Figures) -> [(&'static str, u32); 7] {
+fn named(figures: Figures) -> [(&'static str, u32); 8] {
     [
         ("normal path", figures.normal),
         ("supervision", figures.supervision.unwrap_or(0)),
         ("worst path", figures.worst),
         ("longest path", figures.longest.unwrap_or(0)),
+        (
+            "longest path in control",
+            figures.longest_in_control.unwrap_or(0),
+        ),
         ("cycles", figures.cycles),
         ("code", figures.code),
         ("stack", figures.stack),
@@ -105,6 +109,7 @@ mod tests {
             supervision: Some(normal / 2),
             worst: 100,
             longest: Some(200),
+            longest_in_control: Some(110),
             cycles: 60,
             code: 200,
             stack: 8,

@@ -101,6 +101,7 @@ mod tests {
             supervision: None,
             worst: 116,
             longest: None,
+            longest_in_control: None,
             cycles: 100,
             code: 1000,
             stack: 64,

@@ -46,6 +46,7 @@ mod tests {
             supervision: None,
             worst: 200,
             longest: None,
+            longest_in_control: None,
             cycles: 144,
             code: 400,
             stack: 8,

@@ -24,8 +24,8 @@ const BOUNDS: [(&str, Bound); 5] = [
     ("memclr", Bound::Length(1)),
 ];
 
-/// Bytes from which the functions of compiler_builtins write words: all shorter blocks byte by
-/// byte, of longer ones less than a word in front and behind.
+/// Bytes from which the functions of compiler_builtins write words: shorter blocks byte by byte, of
+/// longer ones less than a word in front and less than one behind.
 const WORDS_FROM: u32 = 16;
 
 /// The bound of a function's loops.
@@ -36,9 +36,27 @@ pub fn bound(function: &str) -> Option<Bound> {
 
 /// Passes of a loop over a block of `length` bytes.
 pub fn passes(length: u32, writes_bytes: bool) -> u32 {
-    if writes_bytes {
-        length.min(WORDS_FROM - 1)
-    } else {
-        length / 4
+    match writes_bytes {
+        true if length < WORDS_FROM => length,
+        true => 3,
+        false => length / 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_blocks_are_written_in_words() {
+        assert_eq!([15, 16, 72].map(|length| passes(length, true)), [15, 3, 3]);
+        assert_eq!([15, 16, 72].map(|length| passes(length, false)), [3, 4, 18]);
+    }
+
+    #[test]
+    fn the_length_is_where_the_function_takes_it() {
+        assert_eq!(bound("__aeabi_memset4"), Some(Bound::Length(1)));
+        assert_eq!(bound("memset"), Some(Bound::Length(2)));
+        assert_eq!(bound("step_x"), None);
     }
 }

@@ -21,6 +21,8 @@ type Call = (u32, Option<u32>);
 #[derive(Debug)]
 pub struct Search<'a> {
     code: &'a Code<'a>,
+    /// Parts of the names of functions whose calls are left out with the paths through them.
+    without: &'static [&'static str],
     known: BTreeMap<Call, Longest>,
     /// Calls from the outermost to this.
     open: Vec<Call>,
@@ -36,9 +38,10 @@ struct Body {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(code: &'a Code<'a>) -> Self {
+    pub fn new(code: &'a Code<'a>, without: &'static [&'static str]) -> Self {
         Self {
             code,
+            without,
             known: BTreeMap::new(),
             open: vec![],
         }
@@ -102,12 +105,16 @@ impl<'a> Search<'a> {
         Ok(body)
     }
 
-    /// The longest path of what an instruction calls: none at all if it calls nothing.
+    /// The longest path of what an instruction calls: of no instructions if it calls nothing.
     fn called(&mut self, at: u32, flow: &Flow) -> Result<Longest, BenchError> {
         let Some(function) = flow.calls else {
             return Ok(Some(0));
         };
-        let length = match bound(self.code.image.name_around(function)) {
+        let name = self.code.image.name_around(function);
+        if self.without.iter().any(|part| name.contains(part)) {
+            return Ok(None);
+        }
+        let length = match bound(name) {
             Some(Bound::Length(argument)) => {
                 let length = self.code.constant_argument(at, argument);
                 // A library's function hands its own block on.

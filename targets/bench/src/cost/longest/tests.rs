@@ -1,8 +1,9 @@
 //! Longest paths of assembled functions, as the disassembler prints them.
 
-use super::Program;
 use super::flow::Code;
 use super::listing::Listing;
+use super::{Longest, Program};
+use crate::cost::count::Counts;
 use crate::cost::elf::{Image, Isa};
 use std::ops::Range;
 
@@ -10,7 +11,8 @@ use std::ops::Range;
 fn longest(isa: Isa, functions: &[(&str, Range<u32>)], text: &str) -> Result<u32, String> {
     let image = Image::of_functions(isa, functions, (0, vec![]));
     let program = Program(Code::new(&image, Listing::parse(text)));
-    program.longest("f").map_err(|error| error.to_string())
+    let longest = program.longest("f").map(|longest| longest.of_all);
+    longest.map_err(|error| error.to_string())
 }
 
 fn thumb(functions: &[(&str, Range<u32>)], text: &str) -> Result<u32, String> {
@@ -116,7 +118,8 @@ c:\tpop\t{{r4, pc}}
     for (name, table) in [("tbb", [2, 3, 3, 0]), ("tbh", [2, 0, 3, 0])] {
         let image = Image::of_functions(Isa::Thumb, &[("f", 0..14)], (4, [table, [0; 4]].concat()));
         let program = Program(Code::new(&image, Listing::parse(&text(name))));
-        assert_eq!(program.longest("f").ok(), Some(3), "{name}");
+        let longest = program.longest("f").map(|longest| longest.of_all);
+        assert_eq!(longest.ok(), Some(3), "{name}");
     }
 }
 
@@ -210,4 +213,61 @@ c:\tret
 1000:\tret
 ";
     assert_eq!(longest(Isa::RiscV, &functions, text), Ok(2 + 1 + 1 + 2 + 1));
+}
+
+#[test]
+fn a_step_in_control_does_not_rest() {
+    let functions = [("f", 0..12), ("step_at_rest", 12..16)];
+    let text = "\
+0:\tcmp\tr0, #1
+2:\tbne.n\t8 <f+0x8>
+4:\tbl\tc <step_at_rest>
+8:\tadds\tr0, #1
+a:\tbx\tlr
+c:\tadds\tr0, #1
+e:\tbx\tlr
+";
+    let image = Image::of_functions(Isa::Thumb, &functions, (0, vec![]));
+    let program = Program(Code::new(&image, Listing::parse(text)));
+    let expected = Longest {
+        of_all: 7,
+        in_control: 4,
+    };
+    assert_eq!(program.longest("f").ok(), Some(expected));
+}
+
+/// The check of the search against what was counted.
+#[test]
+fn a_step_longer_than_the_longest_path_is_an_error() {
+    let counts = Counts {
+        normal: 90,
+        supervision: None,
+        worst: 207,
+        arbitrary: Some(375),
+        stack: 8,
+        cycles: 100,
+    };
+    let check = |of_all, counts| {
+        let longest = Longest {
+            of_all,
+            in_control: 90,
+        };
+        let checked = longest.check("step_x", &counts);
+        checked.map_err(|error| error.to_string())
+    };
+    assert_eq!(check(375, counts), Ok(()));
+    let error = check(374, counts).expect_err("a path is missing");
+    let said = "step_x: a step of 375 instructions was counted, and the longest path has 374";
+    assert!(error.starts_with(said), "{error}");
+    let arbitrary = None;
+    assert!(
+        check(
+            206,
+            Counts {
+                arbitrary,
+                ..counts
+            }
+        )
+        .is_err()
+    );
 }
