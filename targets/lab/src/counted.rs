@@ -22,19 +22,28 @@ pub struct Figures {
     pub supervision: Option<u32>,
     /// Instructions of the worst step in closed loop, except start-up and trips.
     pub worst: u32,
-    /// Instructions of the longest path through the step and its callees, start-up, calibration and
-    /// trips included. Only for drives.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub longest: Option<u32>,
-    /// The same of a step that controls. Only for drives.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub longest_in_control: Option<u32>,
     /// Estimated cycles of the normal path.
     pub cycles: u32,
     /// Bytes of the function's own code.
     pub code: u32,
     /// Bytes of stack.
     pub stack: u32,
+    /// Longest paths. Only for drives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest: Option<Longest>,
+}
+
+/// Longest paths through the control-flow graph of a step and its callees, which no input exceeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Longest {
+    /// Instructions of any step, start-up, calibration and trips included.
+    pub instructions: u32,
+    /// Instructions of a step that controls.
+    pub instructions_in_control: u32,
+    /// Cycles of any step at most, on the chip that `cargo xtask cost` names.
+    pub cycles: u32,
+    /// Cycles of a step that controls.
+    pub cycles_in_control: u32,
 }
 
 impl Figures {
@@ -106,11 +115,10 @@ mod tests {
             normal: 100,
             supervision: None,
             worst: 301,
-            longest: None,
-            longest_in_control: None,
             cycles: 130,
             code: 400,
             stack: 8,
+            longest: None,
         };
         assert_eq!(figures.worst_cycles(), 392);
     }

@@ -100,11 +100,10 @@ mod tests {
             normal: 71,
             supervision: None,
             worst: 116,
-            longest: None,
-            longest_in_control: None,
             cycles: 100,
             code: 1000,
             stack: 64,
+            longest: None,
         };
         assert!(goal.is_met(&at_goal));
         let normal = Figures {

@@ -45,11 +45,10 @@ mod tests {
             normal: 100,
             supervision: None,
             worst: 200,
-            longest: None,
-            longest_in_control: None,
             cycles: 144,
             code: 400,
             stack: 8,
+            longest: None,
         };
         let times = Times::of(&cost, Some(144), 50e-6);
         let usual = times.usual.expect("there is one");

@@ -117,6 +117,16 @@ impl<'a> Code<'a> {
         }
     }
 
+    /// Whether an instruction can load from the memory with code and constants: any load but from
+    /// the stack.
+    pub fn loads_constants(&self, at: u32) -> bool {
+        self.listing.at(at).is_some_and(|line| {
+            let is_load = line.mnemonic.starts_with('l');
+            let is_of_stack = line.operands.contains("[sp") || line.operands.starts_with("sp!");
+            is_load && !is_of_stack
+        })
+    }
+
     /// The largest value of an argument's register at a call, if it is made of constants on every
     /// way to it.
     pub fn constant_argument(&self, call: u32, argument: usize) -> Option<u32> {

@@ -11,6 +11,7 @@
 mod flow;
 mod listing;
 mod loops;
+mod measure;
 mod path;
 mod riscv;
 #[cfg(test)]
@@ -22,7 +23,10 @@ use super::elf::Image;
 use crate::BenchError;
 use crate::targets::Target;
 use flow::Code;
+use hexagen_lab::counted::Longest;
 use listing::Listing;
+pub use measure::chip;
+use measure::{Chip, Measure};
 use path::Search;
 use std::path::Path;
 
@@ -30,17 +34,11 @@ use std::path::Path;
 /// coasting and braking, and where it bridges a disturbed Hall code.
 const AT_REST: [&str; 3] = ["5drive4rest", "5drive4trip", "step_at_rest"];
 
-/// Code of a program, ready for the search.
+/// Code of a program, ready for the search, and a chip to run it.
 #[derive(Debug)]
-pub struct Program<'a>(Code<'a>);
-
-/// Instructions of a step, from its entry to its return, both included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Longest {
-    /// Of the longest path of all.
-    pub of_all: u32,
-    /// Of the longest path of a step that controls.
-    pub in_control: u32,
+pub struct Program<'a> {
+    code: Code<'a>,
+    chip: Chip,
 }
 
 impl<'a> Program<'a> {
@@ -49,7 +47,10 @@ impl<'a> Program<'a> {
     /// # Errors
     /// If the disassembler fails.
     pub fn read(elf: &Path, target: Target, image: &'a Image) -> Result<Self, BenchError> {
-        Ok(Self(Code::new(image, Listing::of(elf, target)?)))
+        Ok(Self {
+            code: Code::new(image, Listing::of(elf, target)?),
+            chip: chip(target),
+        })
     }
 
     /// The longest paths of a step function.
@@ -57,37 +58,45 @@ impl<'a> Program<'a> {
     /// # Errors
     /// What the search refuses.
     pub fn longest(&self, symbol: &str) -> Result<Longest, BenchError> {
+        let cycles = Measure::Cycles(self.chip);
         Ok(Longest {
-            of_all: self.longest_without(symbol, &[])?,
-            in_control: self.longest_without(symbol, &AT_REST)?,
+            instructions: self.longest_without(symbol, &[], Measure::Instructions)?,
+            instructions_in_control: self.longest_without(
+                symbol,
+                &AT_REST,
+                Measure::Instructions,
+            )?,
+            cycles: self.longest_without(symbol, &[], cycles)?,
+            cycles_in_control: self.longest_without(symbol, &AT_REST, cycles)?,
         })
     }
 
-    /// The longest path through no function with one of these parts in its name.
+    /// The longest path through no function with one of these parts in its name, from the call to
+    /// the return.
     fn longest_without(
         &self,
         symbol: &str,
         without: &'static [&'static str],
+        measure: Measure,
     ) -> Result<u32, BenchError> {
-        let entry = self.0.image.function(symbol)?.start;
-        let longest = Search::new(&self.0, without).longest((entry, None))?;
-        longest.ok_or_else(|| BenchError::Failed(format!("`{symbol}` never returns")))
+        let entry = self.code.image.function(symbol)?.start;
+        let longest = Search::new(&self.code, without, measure).longest((entry, None))?;
+        let called = longest.map(|longest| longest + measure.of_jump(&self.code, entry));
+        called.ok_or_else(|| BenchError::Failed(format!("`{symbol}` never returns")))
     }
 }
 
-impl Longest {
-    /// Checks that no step that was counted is longer.
-    ///
-    /// # Errors
-    /// If one is: the search missed its path.
-    pub fn check(self, symbol: &str, counts: &Counts) -> Result<(), BenchError> {
-        let (longest, counted) = (self.of_all, counts.largest());
-        if longest < counted {
-            return Err(BenchError::Failed(format!(
-                "{symbol}: a step of {counted} instructions was counted, and the longest path has \
-                 {longest}: the search in targets/bench/src/cost/longest misses a path"
-            )));
-        }
-        Ok(())
+/// Checks that no step that was counted is longer than the longest path.
+///
+/// # Errors
+/// If one is: the search missed its path.
+pub fn check(symbol: &str, longest: &Longest, counts: &Counts) -> Result<(), BenchError> {
+    let (longest, counted) = (longest.instructions, counts.largest());
+    if longest < counted {
+        return Err(BenchError::Failed(format!(
+            "{symbol}: a step of {counted} instructions was counted, and the longest path has \
+             {longest}: the search in targets/bench/src/cost/longest misses a path"
+        )));
     }
+    Ok(())
 }

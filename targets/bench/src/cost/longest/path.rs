@@ -2,6 +2,7 @@
 
 use super::flow::{ANY, Code, Flags, Flow};
 use super::loops::{Bound, bound, passes};
+use super::measure::Measure;
 use crate::BenchError;
 use petgraph::Direction::Incoming;
 use petgraph::algo::kosaraju_scc;
@@ -11,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// An instruction, and the flags that are possible in front of it.
 type Node = (u32, Flags);
 
-/// Instructions of a path; `None` where none returns.
+/// Length of a path; `None` where none returns.
 type Longest = Option<u32>;
 
 /// A call: the function, and the length of the memory block if that bounds the function's loops.
@@ -23,6 +24,7 @@ pub struct Search<'a> {
     code: &'a Code<'a>,
     /// Parts of the names of functions whose calls are left out with the paths through them.
     without: &'static [&'static str],
+    measure: Measure,
     known: BTreeMap<Call, Longest>,
     /// Calls from the outermost to this.
     open: Vec<Call>,
@@ -31,23 +33,25 @@ pub struct Search<'a> {
 /// What is reached from a function's entry without calls: where control goes from each instruction.
 #[derive(Debug, Default)]
 struct Body {
-    graph: DiGraphMap<Node, ()>,
-    /// Instructions of a node, those of a called function included.
+    /// With the length of each way from one instruction to another.
+    graph: DiGraphMap<Node, u32>,
+    /// Length of a node, that of a called function included.
     weights: BTreeMap<Node, u32>,
     returns: BTreeSet<Node>,
 }
 
 impl<'a> Search<'a> {
-    pub fn new(code: &'a Code<'a>, without: &'static [&'static str]) -> Self {
+    pub fn new(code: &'a Code<'a>, without: &'static [&'static str], measure: Measure) -> Self {
         Self {
             code,
             without,
+            measure,
             known: BTreeMap::new(),
             open: vec![],
         }
     }
 
-    /// The longest path from a function's entry to a return, in instructions, the return included.
+    /// The longest path from a function's entry to a return, the return included.
     /// Paths that never return, as those of a panic, are no steps and are left out.
     ///
     /// # Errors
@@ -82,7 +86,8 @@ impl<'a> Search<'a> {
             let flow = self.code.flow(at).map_err(|text| self.error(at, &text))?;
             let called = self.called(at, &flow)?;
             body.graph.add_node(node);
-            body.weights.insert(node, 1 + called.unwrap_or(0));
+            let own = self.measure.of_instruction(self.code, at);
+            body.weights.insert(node, own + called.unwrap_or(0));
             if called.is_none() {
                 continue;
             }
@@ -94,11 +99,19 @@ impl<'a> Search<'a> {
                 body.returns.insert(node);
             }
             let next = self.code.listing.after(at).filter(|_| flow.goes_on);
-            let next = next.map(|next| (next, else_flags));
-            let jumps = flow.jumps.iter().map(|&to| (to, taken));
-            for (to, flags) in jumps.chain(next).filter(|&(_, flags)| flags != 0) {
+            let next = next.map(|next| {
+                let way = self.measure.of_going_on(self.code, at, next, &flow);
+                (next, else_flags, way)
+            });
+            let jumps = flow
+                .jumps
+                .iter()
+                .map(|&to| (to, taken, self.measure.of_jump(self.code, to)));
+            for (to, flags, way) in jumps.chain(next).filter(|&(_, flags, _)| flags != 0) {
                 let successor = (to, if flow.keeps_flags { flags } else { ANY });
-                body.graph.add_edge(node, successor, ());
+                let known = body.graph.edge_weight(node, successor);
+                let way = way.max(known.copied().unwrap_or(0));
+                body.graph.add_edge(node, successor, way);
                 left.push(successor);
             }
         }
@@ -125,7 +138,8 @@ impl<'a> Search<'a> {
             }
             _ => None,
         };
-        self.longest((function, length))
+        let longest = self.longest((function, length))?;
+        Ok(longest.map(|longest| longest + self.measure.of_jump(self.code, function)))
     }
 
     /// The longest path through a function: components in the order from returns to the entry.
@@ -133,7 +147,8 @@ impl<'a> Search<'a> {
         let mut behind = BTreeMap::new();
         for component in kosaraju_scc(&body.graph) {
             let members: BTreeSet<Node> = component.into_iter().collect();
-            let ends = |node: Node| body.end(node, &members, &behind);
+            let back = self.measure.of_return();
+            let ends = |node: Node| body.end(node, &members, &behind, back);
             if !members.iter().any(|&node| ends(node).is_some()) {
                 continue;
             }
@@ -169,12 +184,13 @@ impl<'a> Search<'a> {
             ));
         };
         let most = self.most_passes(head, members, call)?;
-        let mut inner = DiGraphMap::<Node, ()>::new();
+        let mut inner = DiGraphMap::<Node, u32>::new();
         for &node in members {
             inner.add_node(node);
-            let within = |&to: &Node| members.contains(&to) && to != head;
-            for to in body.graph.neighbors(node).filter(within) {
-                inner.add_edge(node, to, ());
+            for (_, to, &way) in body.graph.edges(node) {
+                if members.contains(&to) && to != head {
+                    inner.add_edge(node, to, way);
+                }
             }
         }
         let [mut leaving, mut returning] = [BTreeMap::new(), BTreeMap::new()];
@@ -186,15 +202,14 @@ impl<'a> Search<'a> {
             };
             let weight = body.weights[&node];
             let farthest = |known: &BTreeMap<Node, u32>, here: Longest| {
-                let behind = inner
-                    .neighbors(node)
-                    .filter_map(|to| known.get(&to).copied());
+                let ways = inner.edges(node);
+                let behind = ways.filter_map(|(_, to, way)| Some(known.get(&to)? + way));
                 behind
                     .chain(here)
                     .max()
                     .map(|behind| (node, behind + weight))
             };
-            let back = body.graph.contains_edge(node, head).then_some(0);
+            let back = body.graph.edge_weight(node, head).copied();
             leaving.extend(farthest(&leaving, ends(node)));
             returning.extend(farthest(&returning, back));
         }
@@ -232,14 +247,19 @@ impl<'a> Search<'a> {
 }
 
 impl Body {
-    /// The longest path that leaves a component behind one of its nodes, that node not counted.
-    fn end(&self, node: Node, members: &BTreeSet<Node>, behind: &BTreeMap<Node, u32>) -> Longest {
-        let outside = self
-            .graph
-            .neighbors(node)
-            .filter(|to| !members.contains(to));
-        let returned = self.returns.contains(&node).then_some(0);
-        let behind = outside.filter_map(|to| behind.get(&to).copied());
+    /// The longest path that leaves a component behind one of its nodes, that node not counted, and
+    /// with this way back to the caller.
+    fn end(
+        &self,
+        node: Node,
+        members: &BTreeSet<Node>,
+        behind: &BTreeMap<Node, u32>,
+        back: u32,
+    ) -> Longest {
+        let ways = self.graph.edges(node);
+        let outside = ways.filter(|(_, to, _)| !members.contains(to));
+        let returned = self.returns.contains(&node).then_some(back);
+        let behind = outside.filter_map(|(_, to, way)| Some(behind.get(&to)? + way));
         behind.chain(returned).max()
     }
 }

@@ -2,16 +2,27 @@
 
 use super::flow::Code;
 use super::listing::Listing;
-use super::{Longest, Program};
+use super::{Program, check, chip};
 use crate::cost::count::Counts;
 use crate::cost::elf::{Image, Isa};
+use crate::targets::Target;
+use hexagen_lab::counted::Longest;
 use std::ops::Range;
+
+/// A program of this text, on the chip of a Cortex-M4.
+fn program<'a>(image: &'a Image, text: &str) -> Program<'a> {
+    Program {
+        code: Code::new(image, Listing::parse(text)),
+        chip: chip(Target::CortexM4),
+    }
+}
 
 /// The longest path of the first function, or the error's text.
 fn longest(isa: Isa, functions: &[(&str, Range<u32>)], text: &str) -> Result<u32, String> {
     let image = Image::of_functions(isa, functions, (0, vec![]));
-    let program = Program(Code::new(&image, Listing::parse(text)));
-    let longest = program.longest("f").map(|longest| longest.of_all);
+    let longest = program(&image, text)
+        .longest("f")
+        .map(|longest| longest.instructions);
     longest.map_err(|error| error.to_string())
 }
 
@@ -117,8 +128,8 @@ c:\tpop\t{{r4, pc}}
     };
     for (name, table) in [("tbb", [2, 3, 3, 0]), ("tbh", [2, 0, 3, 0])] {
         let image = Image::of_functions(Isa::Thumb, &[("f", 0..14)], (4, [table, [0; 4]].concat()));
-        let program = Program(Code::new(&image, Listing::parse(&text(name))));
-        let longest = program.longest("f").map(|longest| longest.of_all);
+        let longest = program(&image, &text(name)).longest("f");
+        let longest = longest.map(|longest| longest.instructions);
         assert_eq!(longest.ok(), Some(3), "{name}");
     }
 }
@@ -228,12 +239,12 @@ c:\tadds\tr0, #1
 e:\tbx\tlr
 ";
     let image = Image::of_functions(Isa::Thumb, &functions, (0, vec![]));
-    let program = Program(Code::new(&image, Listing::parse(text)));
-    let expected = Longest {
-        of_all: 7,
-        in_control: 4,
-    };
-    assert_eq!(program.longest("f").ok(), Some(expected));
+    let longest = program(&image, text).longest("f").expect("paths");
+    assert_eq!(
+        (longest.instructions, longest.instructions_in_control),
+        (7, 4)
+    );
+    assert!(longest.cycles > longest.cycles_in_control);
 }
 
 /// The check of the search against what was counted.
@@ -247,12 +258,14 @@ fn a_step_longer_than_the_longest_path_is_an_error() {
         stack: 8,
         cycles: 100,
     };
-    let check = |of_all, counts| {
+    let check = |instructions, counts| {
         let longest = Longest {
-            of_all,
-            in_control: 90,
+            instructions,
+            instructions_in_control: 90,
+            cycles: 1000,
+            cycles_in_control: 200,
         };
-        let checked = longest.check("step_x", &counts);
+        let checked = check("step_x", &longest, &counts);
         checked.map_err(|error| error.to_string())
     };
     assert_eq!(check(375, counts), Ok(()));
@@ -270,4 +283,40 @@ fn a_step_longer_than_the_longest_path_is_an_error() {
         )
         .is_err()
     );
+}
+
+#[test]
+fn cycles_on_a_cortex_m4_count_waits_for_each_line() {
+    let halves: [u16; 7] = [0xb510, 0x6808, 0xfbb0, 0xf0f1, 0xd000, 0xbf00, 0xbd10];
+    let text = "\
+0:\tpush\t{r4, lr}
+2:\tldr\tr0, [r1, #0]
+4:\tudiv\tr0, r0, r1
+8:\tbeq.n\tc <f+0xc>
+a:\tnop
+c:\tpop\t{r4, pc}
+";
+    let code = halves.iter().flat_map(|half| half.to_le_bytes()).collect();
+    let image = Image::of_functions(Isa::Thumb, &[("f", 0..14)], (0, code));
+    let longest = program(&image, text).longest("f").expect("paths");
+    let entry = 3 + 4 * 2;
+    let [push, load, divide, branch, pop] = [3, 6, 12 + 4, 1, 3];
+    let jump = 3 + 4 * 2;
+    let back = 3 + 4 * 3;
+    let expected = entry + push + load + divide + branch + jump + pop + back;
+    assert_eq!(longest.cycles, expected);
+}
+
+#[test]
+fn cycles_on_hazard3_count_each_branch_as_mispredicted() {
+    let halves: [u16; 3] = [0x4188, 0xc119, 0x8082];
+    let text = "0:\tlw\ta0,0(a1)\n2:\tbeqz\ta0,4 <f+0x4>\n4:\tret\n";
+    let code = halves.iter().flat_map(|half| half.to_le_bytes()).collect();
+    let image = Image::of_functions(Isa::RiscV, &[("f", 0..6)], (0, code));
+    let program = Program {
+        chip: chip(Target::Riscv32),
+        ..program(&image, text)
+    };
+    let longest = program.longest("f").expect("paths");
+    assert_eq!(longest.cycles, 2 + 2 + (1 + 2) + (1 + 2));
 }
