@@ -23,7 +23,7 @@ pub struct Image {
     /// Functions by start address, with their ends.
     functions: BTreeMap<u32, u32>,
     /// Their names, of which C's `static` functions can share one.
-    called: BTreeMap<u32, String>,
+    names_by_start: BTreeMap<u32, String>,
     names: BTreeMap<String, u32>,
     sections: Vec<(u32, Vec<u8>)>,
 }
@@ -48,7 +48,7 @@ impl Image {
         let mut image = Self {
             isa,
             functions: BTreeMap::new(),
-            called: BTreeMap::new(),
+            names_by_start: BTreeMap::new(),
             names: BTreeMap::new(),
             sections: vec![],
         };
@@ -57,7 +57,9 @@ impl Image {
                 // The lowest bit of a Thumb address marks Thumb code.
                 let begin = symbol.address() as u32 & !1;
                 image.functions.insert(begin, begin + symbol.size() as u32);
-                image.called.insert(begin, symbol.name()?.to_owned());
+                image
+                    .names_by_start
+                    .insert(begin, symbol.name()?.to_owned());
                 image.names.insert(symbol.name()?.to_owned(), begin);
             }
         }
@@ -77,7 +79,7 @@ impl Image {
         Self {
             isa,
             functions: named().map(|(_, at)| (at.start, at.end)).collect(),
-            called: named().map(|(name, at)| (at.start, name)).collect(),
+            names_by_start: named().map(|(name, at)| (at.start, name)).collect(),
             names: named().map(|(name, at)| (name, at.start)).collect(),
             sections: vec![code],
         }
@@ -105,7 +107,7 @@ impl Image {
 
     /// Name of the function that an address is in.
     pub fn name_around(&self, at: u32) -> &str {
-        let name = self.called.range(..=at).next_back();
+        let name = self.names_by_start.range(..=at).next_back();
         name.map_or("no function", |(_, name)| name.as_str())
     }
 

@@ -1,10 +1,10 @@
 //! What is added up along a path: instructions, or cycles of a named chip at most.
 //!
-//! Cycles are those of the core's own table for memory without wait states, each instruction at its
-//! most, and every wait state of the chip's memory: for each line of code that control enters, for a
-//! line that the core had begun to fetch behind a jump, and for each word loaded that is not on the
-//! stack, since tables and literals are in the same memory. Nothing is deducted for prefetch,
-//! caches, or overlap of both.
+//! Cycles are those of the core's own table for memory without wait states, each instruction at
+//! its most, and every wait state of the chip's memory: for each line of code that control enters,
+//! for a line that the core had begun to fetch behind a jump, and for each word loaded that is not
+//! on the stack, since tables and literals are in the same memory. Nothing is deducted for
+//! prefetch, caches, or overlap of both.
 
 use super::flow::{Code, Flow};
 use crate::cost::elf::{Class, Instruction};
@@ -39,9 +39,10 @@ pub enum Measure {
 /// The chip whose cycles are bounded on a target.
 pub fn chip(target: Target) -> Chip {
     match target {
-        // Core: Cortex-M4 Technical Reference Manual, 100166_0001_00, Table 3-1: loads and stores of
-        // n words 1 + n, SDIV and UDIV 2 to 12, a pipeline refill P of 1 to 3 cycles. Flash: RM0440,
-        // 3.3.3, four wait states above 136 MHz in range 1 boost; category 2 devices read 64 bits.
+        // Core: Cortex-M4 Technical Reference Manual, 100166_0001_00, Table 3-1: loads and stores
+        // of n words 1 + n, SDIV and UDIV 2 to 12, a pipeline refill P of 1 to 3 cycles. Flash:
+        // RM0440, "Read access latency", four wait states above 136 MHz in range 1 boost; category
+        // 2 devices read 64 bits.
         Target::CortexM4 => Chip {
             name: "STM32G431 at 170 MHz, code in flash",
             division: 12,
@@ -50,9 +51,9 @@ pub fn chip(target: Target) -> Chip {
             waits: 4,
             line: 8,
         },
-        // Core: Cortex-M0 Technical Reference Manual, DDI 0432C, Table 3-1, with the multiplier of one
-        // cycle: loads and stores of n words 1 + n, B 3 when taken, BX 3, BL 4, POP with PC 4 + n. No
-        // division. Flash: RM0360, FLASH_ACR, one wait state above 24 MHz; "Flash memory
+        // Core: Cortex-M0 Technical Reference Manual, DDI 0432C, Table 3-1, with the multiplier of
+        // one cycle: loads and stores of n words 1 + n, B 3 when taken, BX 3, BL 4, POP with PC
+        // 4 + n. No division. Flash: RM0360, FLASH_ACR, one wait state above 24 MHz; "Flash memory
         // organization", cells of 32 bits.
         Target::CortexM0 => Chip {
             name: "STM32F030 at 48 MHz, multiplier of one cycle, code in flash",
@@ -62,10 +63,10 @@ pub fn chip(target: Target) -> Chip {
             waits: 1,
             line: 4,
         },
-        // Core: Hazard3's manual, "Instruction Cycle Counts": a load 2 if the next instruction needs
-        // it, MUL and MULH 1, DIV 18 or 19, a jump or mispredicted branch 2, one more to a 32-bit
-        // instruction across a word. SRAM has no wait states; the code's bank and those of data and
-        // stack are used by nothing else.
+        // Core: Hazard3's manual, "Instruction Cycle Counts": a load 2 if the next instruction
+        // needs it, MUL and MULH 1, DIV 18 or 19, a jump or mispredicted branch 2, one more to a
+        // 32-bit instruction across a word. SRAM has no wait states; the code's bank and those of
+        // data and stack are used by nothing else.
         Target::Riscv32 => Chip {
             name: "RP2350 (Hazard3), code in a bank of SRAM of its own",
             division: 19,
