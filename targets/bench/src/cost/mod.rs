@@ -172,7 +172,7 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     if options.wants(INTERRUPT) {
         let image = Image::read(&firmware.elf("interrupt"), isa(firmware.target))?;
         let inputs = Inputs::record_interrupt(&paper)?;
-        let counts = count(firmware, "interrupt", &image, (0, INTERRUPT), &inputs)?;
+        let counts = count(firmware, "interrupt", &image, (0, INTERRUPT), &inputs, None)?;
         rows.push(Row {
             symbol: INTERRUPT.to_owned(),
             counts,
@@ -241,14 +241,14 @@ fn rows_of(
         let (inputs, tables) = inputs_of(listed)?;
         let symbol = listed.symbol.as_str();
         let step = (listed.place, symbol);
-        let mut counts = count(firmware, program, &image, step, &inputs)?;
+        let mut counts = count(firmware, program, &image, step, &inputs, paths.as_ref())?;
         if IN_RUST.contains(&program) {
             counts.supervision = Some(supervision(firmware, program, listed.place, &inputs)?);
         }
         let longest = paths.as_ref().map(|paths| paths.longest(symbol));
         let longest = longest.transpose()?;
         if let Some(longest) = &longest {
-            longest::check(symbol, longest, &counts)?;
+            longest::check(symbol, longest, counts.largest())?;
         }
         Ok(Row {
             symbol: symbol.to_owned(),

@@ -6,7 +6,8 @@
 //! on the stack, since tables and literals are in the same memory. Nothing is deducted for
 //! prefetch, caches, or overlap of both.
 
-use super::flow::{Code, Flow};
+use super::code::Code;
+use super::flow::Flow;
 use crate::cost::elf::{Class, Instruction};
 use crate::targets::Target;
 

@@ -8,6 +8,7 @@
 //! Jumps to addresses from memory, except Thumb's table branches, calls through pointers, recursion
 //! and unbounded loops are refused with the function's name.
 
+mod code;
 mod flow;
 mod listing;
 mod loops;
@@ -18,16 +19,16 @@ mod riscv;
 mod tests;
 mod thumb;
 
-use super::count::Counts;
 use super::elf::Image;
 use crate::BenchError;
 use crate::targets::Target;
-use flow::Code;
+use code::Code;
 use hexagen_lab::counted::Longest;
 use listing::Listing;
 pub use measure::chip;
 use measure::{Chip, Measure};
 use path::Search;
+use std::ops::Range;
 use std::path::Path;
 
 /// What a step calls when it does not control: in start-up, calibration and pre-charge, in trips,
@@ -71,6 +72,33 @@ impl<'a> Program<'a> {
         })
     }
 
+    /// Checks that the executed instructions of a function's calls follow the control-flow graph. A
+    /// call ends when `caller` continues.
+    ///
+    /// # Errors
+    /// If control went where the graph has no way.
+    pub fn check_executed(
+        &self,
+        executed: impl Iterator<Item = u32>,
+        function: &Range<u32>,
+        caller: &Range<u32>,
+    ) -> Result<(), BenchError> {
+        let mut from = None;
+        for at in executed {
+            if let Some(from) = from
+                && !self.code.leads(from, at)
+            {
+                return Err(BenchError::Failed(format!(
+                    "longest path: control went from {from:#x} to {at:#x}, where the graph has no \
+                     way: correct the flow of this instruction in targets/bench/src/cost/longest"
+                )));
+            }
+            let is_in_call = from.is_some() || at == function.start;
+            from = Some(at).filter(|_| is_in_call && !caller.contains(&at));
+        }
+        Ok(())
+    }
+
     /// The longest path through no function with one of these parts in its name, from the call to
     /// the return.
     fn longest_without(
@@ -86,16 +114,24 @@ impl<'a> Program<'a> {
     }
 }
 
-/// Checks that no step that was counted is longer than the longest path.
+/// Checks that the largest step that was counted is no longer than the longest path, and that what steps call
+/// when they do not control was found.
 ///
 /// # Errors
-/// If one is: the search missed its path.
-pub fn check(symbol: &str, longest: &Longest, counts: &Counts) -> Result<(), BenchError> {
-    let (longest, counted) = (longest.instructions, counts.largest());
-    if longest < counted {
+/// If one is: the search missed its path. If nothing was found: it has another name.
+pub fn check(symbol: &str, longest: &Longest, counted: u32) -> Result<(), BenchError> {
+    let instructions = longest.instructions;
+    if instructions < counted {
         return Err(BenchError::Failed(format!(
             "{symbol}: a step of {counted} instructions was counted, and the longest path has \
-             {longest}: the search in targets/bench/src/cost/longest misses a path"
+             {instructions}: the search in targets/bench/src/cost/longest misses a path"
+        )));
+    }
+    if instructions == longest.instructions_in_control {
+        return Err(BenchError::Failed(format!(
+            "{symbol}: its longest path calls none of {}: correct these names in \
+             targets/bench/src/cost/longest/mod.rs",
+            AT_REST.join(", ")
         )));
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! The longest path through a function and its callees.
 
-use super::flow::{ANY, Code, Flags, Flow};
+use super::code::Code;
+use super::flow::{ANY, Flags, Flow};
 use super::loops::{Bound, bound, passes};
 use super::measure::Measure;
 use crate::BenchError;

@@ -1,7 +1,7 @@
 //! Control flow of RV32IMC.
 
-use super::flow::{Code, Flow};
-use super::listing::{Line, address};
+use super::flow::Flow;
+use super::listing::{Line, Listing, address};
 
 /// Conditional branches, as the disassembler spells them.
 const BRANCHES: [&str; 16] = [
@@ -13,7 +13,7 @@ const BRANCHES: [&str; 16] = [
 ///
 /// # Errors
 /// Why that is not known.
-pub fn flow(code: &Code, at: u32, line: &Line) -> Result<Flow, String> {
+pub fn flow(listing: &Listing, at: u32, line: &Line) -> Result<Flow, String> {
     let target = || {
         let last = line.operands().last().and_then(address);
         last.ok_or_else(|| format!("no target in `{} {}`", line.mnemonic, line.operands))
@@ -22,8 +22,8 @@ pub fn flow(code: &Code, at: u32, line: &Line) -> Result<Flow, String> {
         "ret" => Flow::back(),
         "j" => Flow::jump(target()?),
         "jal" if line.operands().count() == 1 => Flow::call(target()?),
-        "jalr" => Flow::call(far_target(code, at, line)?),
-        "jr" => Flow::jump(far_target(code, at, line)?),
+        "jalr" => Flow::call(far_target(listing, at, line)?),
+        "jr" => Flow::jump(far_target(listing, at, line)?),
         // The upper bits of an address for the instruction behind, which names the target.
         "unimp" | "c.unimp" => Flow::default(),
         mnemonic if BRANCHES.contains(&mnemonic) => Flow::jump(target()?).or_on(),
@@ -33,7 +33,7 @@ pub fn flow(code: &Code, at: u32, line: &Line) -> Result<Flow, String> {
 }
 
 /// The target of `jalr 10(ra) # 800012ac <symbol>` behind `auipc ra`.
-fn far_target(code: &Code, at: u32, line: &Line) -> Result<u32, String> {
+fn far_target(listing: &Listing, at: u32, line: &Line) -> Result<u32, String> {
     let unknown = || {
         format!(
             "`{} {}` jumps to an address from memory or through a table, which is not followed",
@@ -44,7 +44,7 @@ fn far_target(code: &Code, at: u32, line: &Line) -> Result<u32, String> {
     let register = operand
         .split_once('(')
         .map(|(_, of)| of.trim_end_matches(')'));
-    let (_, upper) = code.listing.before(at).ok_or_else(unknown)?;
+    let (_, upper) = listing.before(at).ok_or_else(unknown)?;
     if upper.mnemonic == "auipc" && upper.operands().next() == register {
         return address(comment).ok_or_else(unknown);
     }

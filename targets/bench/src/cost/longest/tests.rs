@@ -1,9 +1,8 @@
 //! Longest paths of assembled functions, as the disassembler prints them.
 
-use super::flow::Code;
+use super::code::Code;
 use super::listing::Listing;
 use super::{Program, check, chip};
-use crate::cost::count::Counts;
 use crate::cost::elf::{Image, Isa};
 use crate::targets::Target;
 use hexagen_lab::counted::Longest;
@@ -250,39 +249,45 @@ e:\tbx\tlr
 /// The check of the search against what was counted.
 #[test]
 fn a_step_longer_than_the_longest_path_is_an_error() {
-    let counts = Counts {
-        normal: 90,
-        supervision: None,
-        worst: 207,
-        arbitrary: Some(375),
-        stack: 8,
-        cycles: 100,
-    };
-    let check = |instructions, counts| {
+    let check = |instructions, largest| {
         let longest = Longest {
             instructions,
             instructions_in_control: 90,
             cycles: 1000,
             cycles_in_control: 200,
         };
-        let checked = check("step_x", &longest, &counts);
+        let checked = check("step_x", &longest, largest);
         checked.map_err(|error| error.to_string())
     };
-    assert_eq!(check(375, counts), Ok(()));
-    let error = check(374, counts).expect_err("a path is missing");
+    assert_eq!(check(375, 375), Ok(()));
+    let error = check(374, 375).expect_err("a path is missing");
     let said = "step_x: a step of 375 instructions was counted, and the longest path has 374";
     assert!(error.starts_with(said), "{error}");
-    let arbitrary = None;
-    assert!(
-        check(
-            206,
-            Counts {
-                arbitrary,
-                ..counts
-            }
-        )
-        .is_err()
-    );
+    let error = check(90, 90).expect_err("nothing is left out");
+    assert!(error.contains("calls none of 5drive4rest"), "{error}");
+}
+
+#[test]
+fn executed_instructions_follow_the_graph() {
+    let functions = [("f", 0..8), ("g", 8..12)];
+    let text = "\
+0:\tpush\t{r4, lr}
+2:\tbl\t8 <g>
+6:\tpop\t{r4, pc}
+8:\tadds\tr0, #1
+a:\tbx\tlr
+";
+    let image = Image::of_functions(Isa::Thumb, &functions, (0, vec![]));
+    let program = program(&image, text);
+    let check = |executed: &[u32]| {
+        let executed = executed.iter().copied();
+        let checked = program.check_executed(executed, &(0..8), &(0x100..0x104));
+        checked.map_err(|error| error.to_string())
+    };
+    let call = [0x102, 0, 2, 8, 10, 6, 0x102, 0x200, 0, 2];
+    assert_eq!(check(&call), Ok(()));
+    let error = check(&[0, 2, 6]).expect_err("the call is skipped");
+    assert!(error.contains("from 0x2 to 0x6"), "{error}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Control flow of ARMv6-M and ARMv7E-M.
 
-use super::flow::{Code, Flags, Flow};
-use super::listing::{Line, address};
+use super::flow::{Flags, Flow};
+use super::listing::{Line, Listing, address};
+use crate::cost::elf::Image;
 
 /// Instructions that can leave the straight path.
 const LEAVING: [&str; 12] = [
@@ -52,13 +53,13 @@ fn split(mnemonic: &str, of: &[&'static str]) -> Option<(&'static str, Option<Fl
 ///
 /// # Errors
 /// Why that is not known.
-pub fn flow(code: &Code, at: u32, line: &Line) -> Result<Flow, String> {
+pub fn flow(image: &Image, listing: &Listing, at: u32, line: &Line) -> Result<Flow, String> {
     let mnemonic = line.mnemonic.as_str();
     let flow = match split(mnemonic, &LEAVING) {
-        Some((base, None)) => leaving(code, at, line, base)?,
+        Some((base, None)) => leaving(image, listing, at, line, base)?,
         Some((base, Some(condition))) => Flow {
             condition: Some(condition),
-            ..leaving(code, at, line, base)?.or_on()
+            ..leaving(image, listing, at, line, base)?.or_on()
         },
         None => plain(line)?,
     };
@@ -71,7 +72,13 @@ pub fn flow(code: &Code, at: u32, line: &Line) -> Result<Flow, String> {
 
 /// Where control goes from an instruction that can leave the straight path, its condition
 /// fulfilled.
-fn leaving(code: &Code, at: u32, line: &Line, base: &str) -> Result<Flow, String> {
+fn leaving(
+    image: &Image,
+    listing: &Listing,
+    at: u32,
+    line: &Line,
+    base: &str,
+) -> Result<Flow, String> {
     let first = line.operands().next().unwrap_or_default();
     let target = || {
         let last = line.operands().last().and_then(address);
@@ -80,13 +87,13 @@ fn leaving(code: &Code, at: u32, line: &Line, base: &str) -> Result<Flow, String
     Ok(match base {
         "b" => Flow::jump(target()?),
         // GCC jumps further than B reaches by BL, in functions that keep LR on the stack.
-        "bl" if !code.image.is_function(target()?) => Flow::jump(target()?),
+        "bl" if !image.is_function(target()?) => Flow::jump(target()?),
         "bl" => Flow::call(target()?),
         "bx" if first == "lr" => Flow::back(),
         "bx" | "blx" => return Err(unknown(line)),
         "cbz" | "cbnz" => Flow::jump(target()?).or_on(),
-        "tbb" => table(code, at, 1)?,
-        "tbh" => table(code, at, 2)?,
+        "tbb" => table(image, listing, at, 1)?,
+        "tbh" => table(image, listing, at, 2)?,
         "udf" => Flow::default(),
         "pop" | "ldmia" if line.operands.contains("pc}") => Flow::back(),
         "ldr" if first == "pc" && line.operands.contains("[sp], #") => Flow::back(),
@@ -114,13 +121,13 @@ fn unknown(line: &Line) -> String {
 
 /// Targets of TBB and TBH, whose table of half distances, in entries of `width` bytes, lies behind
 /// the instruction.
-fn table(code: &Code, at: u32, width: u32) -> Result<Flow, String> {
+fn table(image: &Image, listing: &Listing, at: u32, width: u32) -> Result<Flow, String> {
     let begin = at + 4;
-    let behind = code.listing.code_after(at);
+    let behind = listing.code_after(at);
     let end = behind.ok_or("no instruction behind the table")?;
     let mut jumps = vec![];
     for entry in (begin..end).step_by(width as usize) {
-        let word = code.image.half(entry).ok_or("the table cannot be read")?;
+        let word = image.half(entry).ok_or("the table cannot be read")?;
         let distance = if width == 1 { word & 0xff } else { word };
         // A table of an odd number of bytes is filled up by a zero.
         if distance != 0 {
