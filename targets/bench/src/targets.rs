@@ -55,6 +55,14 @@ impl Target {
         }
     }
 
+    /// The disassembler, which is installed with the C compiler.
+    pub fn disassembler(self) -> &'static str {
+        match self {
+            Self::CortexM4 | Self::CortexM0 => "arm-none-eabi-objdump",
+            Self::Riscv32 => "riscv64-unknown-elf-objdump",
+        }
+    }
+
     /// The emulator's program.
     pub fn emulator(self) -> &'static str {
         match self {

@@ -28,6 +28,22 @@ pub struct Figures {
     pub code: u32,
     /// Bytes of stack.
     pub stack: u32,
+    /// Longest paths. Only for drives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest: Option<Longest>,
+}
+
+/// Longest paths through the control-flow graph of a step and its callees, which no input exceeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Longest {
+    /// Instructions of any step, start-up, calibration and trips included.
+    pub instructions: u32,
+    /// Instructions of a step that controls.
+    pub instructions_in_control: u32,
+    /// Cycles of any step at most, on the chip that `cargo xtask cost` names.
+    pub cycles: u32,
+    /// Cycles of a step that controls.
+    pub cycles_in_control: u32,
 }
 
 impl Figures {
@@ -102,6 +118,7 @@ mod tests {
             cycles: 130,
             code: 400,
             stack: 8,
+            longest: None,
         };
         assert_eq!(figures.worst_cycles(), 392);
     }

@@ -1,7 +1,8 @@
 //! Counts a step function on recorded inputs of a closed loop.
 
-use super::cycles::{Executed, executed};
+use super::cycles::{Executed, executed, executed_addresses};
 use super::elf::Image;
+use super::longest::Program;
 use crate::BenchError;
 use crate::firmware::Firmware;
 use crate::vectors::{Recorder, Stretch};
@@ -47,6 +48,13 @@ pub struct Counts {
     pub stack: u32,
     /// Estimated cycles of a settled step: the median.
     pub cycles: u32,
+}
+
+impl Counts {
+    /// Instructions of the longest step that was counted.
+    pub fn largest(&self) -> u32 {
+        self.worst.max(self.normal).max(self.arbitrary.unwrap_or(0))
+    }
 }
 
 impl Inputs {
@@ -169,16 +177,18 @@ fn median(mut numbers: Vec<u32>) -> u32 {
     numbers.get(numbers.len() / 2).copied().unwrap_or(0)
 }
 
-/// Counts a step function of a program, given its index in the program's list and its symbol.
+/// Counts a step function of a program, given its index in the program's list and its symbol, and
+/// its code if its longest paths are searched.
 ///
 /// # Errors
-/// If the emulator fails, or its two ways of counting differ.
+/// If the emulator fails, its two ways of counting differ, or a step leaves the control-flow graph.
 pub fn count(
     firmware: &Firmware,
     program: &str,
     image: &Image,
     (place, symbol): (u16, &str),
     inputs: &Inputs,
+    code: Option<&Program>,
 ) -> Result<Counts, BenchError> {
     let task = Task {
         mode: Mode::Count,
@@ -203,7 +213,7 @@ pub fn count(
         stack = stack.max(depth(records)?);
     }
     let traced = numbers(&firmware.run_program(program, task, &inputs.traced)?);
-    let calls = trace(firmware, program, image, symbol, task, inputs)?;
+    let calls = trace(firmware, program, image, symbol, task, inputs, code)?;
     let instructions: Vec<u32> = calls.iter().map(|call| call.instructions).collect();
     if instructions != traced {
         let mut calls = 0..instructions.len().max(traced.len());
@@ -257,6 +267,7 @@ fn trace(
     symbol: &str,
     task: Task,
     inputs: &Inputs,
+    code: Option<&Program>,
 ) -> Result<Vec<Executed>, BenchError> {
     let function = image.function(symbol)?;
     let caller = image.function("hexagen_counted_call")?;
@@ -265,6 +276,9 @@ fn trace(
         ..task
     };
     let log = firmware.trace(program, task, &inputs.traced)?;
+    if let Some(code) = code {
+        code.check_executed(executed_addresses(&log), &function, &caller)?;
+    }
     Ok(executed(&log, image, firmware.target, &function, &caller))
 }
 
@@ -282,6 +296,21 @@ mod tests {
     use crate::cost::{INTERRUPT_VARIANT, paper_drive};
     use crate::vectors::Called;
     use hexagen::Fault;
+
+    #[test]
+    fn the_largest_step_is_that_of_any_input() {
+        let counts = |worst, arbitrary| Counts {
+            normal: 90,
+            supervision: None,
+            worst,
+            arbitrary,
+            stack: 8,
+            cycles: 100,
+        };
+        assert_eq!(counts(207, Some(375)).largest(), 375);
+        assert_eq!(counts(207, Some(206)).largest(), 207);
+        assert_eq!(counts(207, None).largest(), 207);
+    }
 
     /// Checks the documentation of the table's column of arbitrary inputs.
     #[test]

@@ -69,7 +69,7 @@ pub fn executed(
 /// The emulator logs an instruction before it executes it. If another of its threads interrupts the
 /// core in between, a line `Stopped execution of TB chain before …` follows, and the instruction is
 /// logged once more when the core goes on.
-fn executed_addresses(log: &str) -> impl Iterator<Item = u32> {
+pub fn executed_addresses(log: &str) -> impl Iterator<Item = u32> {
     let mut lines = log.lines().peekable();
     iter::from_fn(move || {
         loop {

@@ -22,6 +22,8 @@ pub struct Image {
     isa: Isa,
     /// Functions by start address, with their ends.
     functions: BTreeMap<u32, u32>,
+    /// Their names, of which C's `static` functions can share one.
+    names_by_start: BTreeMap<u32, String>,
     names: BTreeMap<String, u32>,
     sections: Vec<(u32, Vec<u8>)>,
 }
@@ -46,6 +48,7 @@ impl Image {
         let mut image = Self {
             isa,
             functions: BTreeMap::new(),
+            names_by_start: BTreeMap::new(),
             names: BTreeMap::new(),
             sections: vec![],
         };
@@ -54,6 +57,9 @@ impl Image {
                 // The lowest bit of a Thumb address marks Thumb code.
                 let begin = symbol.address() as u32 & !1;
                 image.functions.insert(begin, begin + symbol.size() as u32);
+                image
+                    .names_by_start
+                    .insert(begin, symbol.name()?.to_owned());
                 image.names.insert(symbol.name()?.to_owned(), begin);
             }
         }
@@ -66,6 +72,19 @@ impl Image {
         Ok(image)
     }
 
+    /// An image of these functions, and of code at an address, for tests.
+    #[cfg(test)]
+    pub fn of_functions(isa: Isa, functions: &[(&str, Range<u32>)], code: (u32, Vec<u8>)) -> Self {
+        let named = || functions.iter().map(|(name, at)| ((*name).to_owned(), at));
+        Self {
+            isa,
+            functions: named().map(|(_, at)| (at.start, at.end)).collect(),
+            names_by_start: named().map(|(name, at)| (at.start, name)).collect(),
+            names: named().map(|(name, at)| (name, at.start)).collect(),
+            sections: vec![code],
+        }
+    }
+
     /// Address of a function.
     ///
     /// # Errors
@@ -74,6 +93,22 @@ impl Image {
         let missing = || BenchError::Failed(format!("the ELF has no function `{name}`"));
         let begin = *self.names.get(name).ok_or_else(missing)?;
         Ok(begin..self.functions[&begin])
+    }
+
+    /// The instruction set.
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    /// Whether a function begins at an address.
+    pub fn is_function(&self, at: u32) -> bool {
+        self.functions.contains_key(&at)
+    }
+
+    /// Name of the function that an address is in.
+    pub fn name_around(&self, at: u32) -> &str {
+        let name = self.names_by_start.range(..=at).next_back();
+        name.map_or("no function", |(_, name)| name.as_str())
     }
 
     /// Code size of a function and of its callees.
@@ -126,20 +161,22 @@ impl Image {
 
     /// The instruction at an address.
     pub fn instruction(&self, at: u32) -> Option<Instruction> {
+        Some(Instruction {
+            isa: self.isa,
+            first: self.half(at)?,
+            second: self.half(at + 2).unwrap_or(0),
+        })
+    }
+
+    /// The 16 bits of code at an address.
+    pub fn half(&self, at: u32) -> Option<u16> {
         let (begin, bytes) = self
             .sections
             .iter()
             .find(|(begin, bytes)| (*begin..*begin + bytes.len() as u32).contains(&at))?;
-        let half = |offset: u32| {
-            let place = (at - begin + offset) as usize;
-            let bytes = bytes.get(place..place + 2)?;
-            Some(u16::from_le_bytes([bytes[0], bytes[1]]))
-        };
-        Some(Instruction {
-            isa: self.isa,
-            first: half(0)?,
-            second: half(2).unwrap_or(0),
-        })
+        let place = (at - begin) as usize;
+        let bytes = bytes.get(place..place + 2)?;
+        Some(u16::from_le_bytes([bytes[0], bytes[1]]))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_lab::counted::{Counted, Figures};
+use hexagen_lab::counted::{Counted, Figures, Longest};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
@@ -12,8 +12,9 @@ use std::path::PathBuf;
 #[derive(Debug)]
 pub struct Expected(pub Counted);
 
-/// The figures by name.
-fn named(figures: Figures) -> [(&'static str, u32); 6] {
+/// The figures by name. Those that a step lacks are 0.
+fn named(figures: Figures) -> [(&'static str, u32); 10] {
+    let path = |of: fn(Longest) -> u32| figures.longest.map_or(0, of);
     [
         ("normal path", figures.normal),
         ("supervision", figures.supervision.unwrap_or(0)),
@@ -21,6 +22,16 @@ fn named(figures: Figures) -> [(&'static str, u32); 6] {
         ("cycles", figures.cycles),
         ("code", figures.code),
         ("stack", figures.stack),
+        ("longest path", path(|longest| longest.instructions)),
+        (
+            "longest path in control",
+            path(|longest| longest.instructions_in_control),
+        ),
+        ("most cycles", path(|longest| longest.cycles)),
+        (
+            "most cycles in control",
+            path(|longest| longest.cycles_in_control),
+        ),
     ]
 }
 
@@ -97,6 +108,13 @@ impl Expected {
 mod tests {
     use super::*;
 
+    const LONGEST: Longest = Longest {
+        instructions: 200,
+        instructions_in_control: 110,
+        cycles: 600,
+        cycles_in_control: 300,
+    };
+
     #[test]
     fn increases_fail_and_another_compiler_fails_only_above_its_goal() {
         let figures = |normal: u32| Figures {
@@ -106,6 +124,7 @@ mod tests {
             cycles: 60,
             code: 200,
             stack: 8,
+            longest: Some(LONGEST),
         };
         let of = |normal: u32| BTreeMap::from([("step_x".to_owned(), figures(normal))]);
         let expected = Expected(Counted {
@@ -124,6 +143,25 @@ mod tests {
             [
                 "step_x: normal path rose from 50 to 52",
                 "step_x: supervision rose from 25 to 26"
+            ]
+        );
+        let longest = Some(Longest {
+            instructions: 201,
+            cycles_in_control: 301,
+            ..LONGEST
+        });
+        let longer = BTreeMap::from([(
+            "step_x".to_owned(),
+            Figures {
+                longest,
+                ..figures(50)
+            },
+        )]);
+        assert_eq!(
+            expected.rises("rustc 1", &longer, above),
+            [
+                "step_x: longest path rose from 200 to 201",
+                "step_x: most cycles in control rose from 300 to 301"
             ]
         );
         assert_eq!(expected.rises("rustc 2", &of(53), above), [""; 0]);

@@ -103,6 +103,7 @@ mod tests {
             cycles: 100,
             code: 1000,
             stack: 64,
+            longest: None,
         };
         assert!(goal.is_met(&at_goal));
         let normal = Figures {

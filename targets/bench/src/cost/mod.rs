@@ -6,6 +6,7 @@ mod cycles;
 pub mod elf;
 mod expected;
 mod goals;
+mod longest;
 mod peers;
 
 use crate::BenchError;
@@ -19,9 +20,10 @@ use count::{Counts, Inputs, count, supervision};
 use elf::{Code, Image, Isa};
 use expected::Expected;
 use goals::goal;
-use hexagen_lab::counted::{Counted, Figures};
+use hexagen_lab::counted::{Counted, Figures, Longest};
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};
 use hexagen_lab::reproduction::counted_readings;
+use longest::{Program, chip};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -35,8 +37,30 @@ const INTERRUPT_VARIANT: &str = "pdcc:reference=quasi_square,saturation=keep_ang
 /// The program with the drives of the paper's experiment.
 const EXPERIMENT: &str = "experiment";
 
+/// The program with the peers.
+const PEERS: &str = "peers";
+
 /// The programs with drives in Rust, whose supervision is counted separately.
 const IN_RUST: [&str; 2] = ["bench", EXPERIMENT];
+
+/// What the columns are.
+const LEGEND: &str = "normal, worst: instructions from the function's entry to its return, in closed loop at rated current (QEMU); normal is the \
+    median of settled steps at 0.2 and 0.7 of the rated speed, worst the maximum of all steps there, at 1.25 and at -0.7 of it, each \
+    from the initial state.\n\
+    supervision: share of the normal path, counted on a drive with the same limits and an empty law: call and return, mode, \
+    checks of Hall code, ADCs and currents. The rest is the law. Only for drives in Rust.\n\
+    arbitrary: maximum in calibration, in pre-charge, and on arbitrary inputs and calls, which trip the drive; only for drives.\n\
+    longest: instructions of the longest path through the control-flow graph of the function and its callees, paths that never \
+    return left out; behind it, as a multiple of the largest counted step. Paths count whose conditions contradict each other, as \
+    one that trips and then controls. in control: the same without start-up, calibration, pre-charge, trips, coasting, braking and \
+    bridged Hall codes. Only for drives.\n\
+    most cycles: an upper bound along both graphs, for the chip above: times of its core's manual, each instruction at its most; \
+    wait states for every line fetched, without credit for prefetch and caches. Only for drives.\n\
+    goal: normal / worst / stack of the best version found by editing the emitted text by hand, with the same supervisor.\n\
+    code: bytes of the function, and of its callees. state: bytes of the drive's type. stack: bytes, maximum of all steps.\n\
+    cycles: estimated for the normal path: load, store 2, of n words 1 + n, taken branch 3, all else 1.\n\
+    Peers (step_f32_..., step_i16f16_..., step_foc, step_idsp) have no supervisor; their outputs are compared with the host, exactly (of step_foc, \
+    the first 500 steps).";
 
 /// Options of counting.
 #[derive(Debug, clap::Args)]
@@ -60,6 +84,8 @@ impl Options {
 struct Row {
     symbol: String,
     counts: Counts,
+    /// Only for drives.
+    longest: Option<Longest>,
     code: Code,
     /// Bytes of tables; `None` for peers, whose tables have no names.
     tables: Option<usize>,
@@ -75,6 +101,7 @@ impl Row {
             cycles: self.counts.cycles,
             code: self.code.own,
             stack: self.counts.stack,
+            longest: self.longest,
         }
     }
 }
@@ -89,7 +116,9 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         let firmware = Firmware::build(target)?;
         let rows = rows(&firmware, options)?;
         let compiler = firmware.toolchain.version();
-        println!("{}, {compiler}\n{}", target.name(), table(target, &rows));
+        let (name, chip) = (target.name(), chip(target).name);
+        let table = table(target, &rows);
+        println!("{name}, {compiler}; most cycles: {chip}\n{table}");
         let figures = figures(&rows);
         if options.accept {
             let compiler = compiler.to_owned();
@@ -115,19 +144,7 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
             );
         }
     }
-    println!(
-        "normal, worst: instructions from the function's entry to its return, in closed loop at rated current (QEMU); normal is the \
-         median of settled steps at 0.2 and 0.7 of the rated speed, worst the maximum of all steps there, at 1.25 and at -0.7 of it, each \
-         from the initial state.\n\
-         supervision: share of the normal path, counted on a drive with the same limits and an empty law: call and return, mode, \
-         checks of Hall code, ADCs and currents. The rest is the law. Only for drives in Rust.\n\
-         arbitrary: maximum in calibration, in pre-charge, and on arbitrary inputs and calls, which trip the drive; only for drives.\n\
-         goal: normal / worst / stack of the best version found by editing the emitted text by hand, with the same supervisor.\n\
-         code: bytes of the function, and of its callees. state: bytes of the drive's type. stack: bytes, maximum of all steps.\n\
-         cycles: estimated for the normal path: load, store 2, of n words 1 + n, taken branch 3, all else 1.\n\
-         Peers (step_f32_..., step_i16f16_..., step_foc, step_idsp) have no supervisor; their outputs are compared with the host, exactly (of step_foc, \
-         the first 500 steps)."
-    );
+    println!("{LEGEND}");
     if rises.is_empty() {
         return Ok(());
     }
@@ -155,10 +172,11 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     if options.wants(INTERRUPT) {
         let image = Image::read(&firmware.elf("interrupt"), isa(firmware.target))?;
         let inputs = Inputs::record_interrupt(&paper)?;
-        let counts = count(firmware, "interrupt", &image, (0, INTERRUPT), &inputs)?;
+        let counts = count(firmware, "interrupt", &image, (0, INTERRUPT), &inputs, None)?;
         rows.push(Row {
             symbol: INTERRUPT.to_owned(),
             counts,
+            longest: None,
             code: image.code(INTERRUPT)?,
             tables: None,
             state: None,
@@ -168,10 +186,10 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     firmware.build_peers()?;
     let of_peer = |listed: &Listed| {
         let run = peers::run(&paper, &listed.symbol)?;
-        run.compare(&Emulated(firmware, "peers"), listed)?;
+        run.compare(&Emulated(firmware, PEERS), listed)?;
         Ok((run.inputs, None))
     };
-    rows.extend(rows_of(firmware, "peers", options, of_peer)?);
+    rows.extend(rows_of(firmware, PEERS, options, of_peer)?);
     Ok(rows)
 }
 
@@ -213,34 +231,35 @@ fn rows_of(
     options: &Options,
     inputs_of: impl Fn(&Listed) -> Result<(Inputs, Option<usize>), BenchError> + Sync,
 ) -> Result<Vec<Row>, BenchError> {
-    let image = Image::read(&firmware.elf(program), isa(firmware.target))?;
+    let elf = firmware.elf(program);
+    let image = Image::read(&elf, isa(firmware.target))?;
+    let paths = (program != PEERS).then(|| Program::read(&elf, firmware.target, &image));
+    let paths = paths.transpose()?;
     let mut steps = firmware.drives(program)?;
     steps.retain(|step| options.wants(&step.symbol));
     let row_of = |listed: &Listed| {
         let (inputs, tables) = inputs_of(listed)?;
-        let step = (listed.place, listed.symbol.as_str());
-        let mut counts = count(firmware, program, &image, step, &inputs)?;
+        let symbol = listed.symbol.as_str();
+        let step = (listed.place, symbol);
+        let mut counts = count(firmware, program, &image, step, &inputs, paths.as_ref())?;
         if IN_RUST.contains(&program) {
             counts.supervision = Some(supervision(firmware, program, listed.place, &inputs)?);
         }
-        row(&image, listed, counts, tables)
+        let longest = paths.as_ref().map(|paths| paths.longest(symbol));
+        let longest = longest.transpose()?;
+        if let Some(longest) = &longest {
+            longest::check(symbol, longest, counts.largest())?;
+        }
+        Ok(Row {
+            symbol: symbol.to_owned(),
+            counts,
+            longest,
+            code: image.code(symbol)?,
+            tables,
+            state: Some(listed.size),
+        })
     };
     steps.par_iter().map(row_of).collect()
-}
-
-fn row(
-    image: &Image,
-    listed: &Listed,
-    counts: Counts,
-    tables: Option<usize>,
-) -> Result<Row, BenchError> {
-    Ok(Row {
-        symbol: listed.symbol.clone(),
-        counts,
-        code: image.code(&listed.symbol)?,
-        tables,
-        state: Some(listed.size),
-    })
 }
 
 /// Bytes of a drive's tables in flash: entries of the least width that fits their values.
@@ -278,6 +297,10 @@ fn table(target: Target, rows: &[Row]) -> Table {
         "supervision",
         "worst",
         "arbitrary",
+        "longest",
+        "",
+        "in control",
+        "most cycles",
         "goal",
         "",
         "cycles",
@@ -290,6 +313,7 @@ fn table(target: Target, rows: &[Row]) -> Table {
     let or_dash = |number: Option<usize>| number.map_or("-".to_owned(), |n| n.to_string());
     for row in rows {
         let counts = row.counts;
+        let of_path = |text: &dyn Fn(Longest) -> String| row.longest.map_or("-".to_owned(), text);
         let (goal, verdict) = goal(target, &row.symbol).map_or((String::new(), ""), |goal| {
             let is_met = goal.is_met(&row.figures());
             (goal.to_string(), if is_met { "met" } else { "not met" })
@@ -300,6 +324,13 @@ fn table(target: Target, rows: &[Row]) -> Table {
             or_dash(counts.supervision.map(|count| count as usize)),
             counts.worst.to_string(),
             or_dash(counts.arbitrary.map(|most| most as usize)),
+            of_path(&|longest| longest.instructions.to_string()),
+            of_path(&|longest| {
+                let ratio = f64::from(longest.instructions) / f64::from(counts.largest());
+                format!("x {ratio:.2}")
+            }),
+            of_path(&|longest| longest.instructions_in_control.to_string()),
+            of_path(&|longest| format!("{} / {}", longest.cycles, longest.cycles_in_control)),
             goal,
             verdict.to_owned(),
             counts.cycles.to_string(),
@@ -310,7 +341,7 @@ fn table(target: Target, rows: &[Row]) -> Table {
             counts.stack.to_string(),
         ]);
     }
-    for column in [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12] {
+    for column in (1..10).chain(11..17) {
         if let Some(column) = table.column_mut(column) {
             column.set_cell_alignment(CellAlignment::Right);
         }

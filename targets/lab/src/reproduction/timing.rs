@@ -48,6 +48,7 @@ mod tests {
             cycles: 144,
             code: 400,
             stack: 8,
+            longest: None,
         };
         let times = Times::of(&cost, Some(144), 50e-6);
         let usual = times.usual.expect("there is one");

@@ -1,0 +1,133 @@
+//! What is added up along a path: instructions, or cycles of a named chip at most.
+//!
+//! Cycles are those of the core's own table for memory without wait states, each instruction at
+//! its most, and every wait state of the chip's memory: for each line of code that control enters,
+//! for a line that the core had begun to fetch behind a jump, and for each word loaded that is not
+//! on the stack, since tables and literals are in the same memory. Nothing is deducted for
+//! prefetch, caches, or overlap of both.
+
+use super::code::Code;
+use super::flow::Flow;
+use crate::cost::elf::{Class, Instruction};
+use crate::targets::Target;
+
+/// A chip, with its core's times in cycles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Chip {
+    /// Name and clock.
+    pub name: &'static str,
+    /// A division.
+    division: u32,
+    /// What a jump, a call or a return takes beyond one cycle.
+    refill: u32,
+    /// What a conditional branch that is not taken takes beyond one cycle.
+    not_taken: u32,
+    /// Wait states of the memory with code and constants.
+    waits: u32,
+    /// Bytes of a line of this memory.
+    line: u32,
+}
+
+/// What is added up along a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Instructions.
+    Instructions,
+    /// Cycles of a chip, at most.
+    Cycles(Chip),
+}
+
+/// The chip whose cycles are bounded on a target.
+pub fn chip(target: Target) -> Chip {
+    match target {
+        // Core: Cortex-M4 Technical Reference Manual, 100166_0001_00, Table 3-1: loads and stores
+        // of n words 1 + n, SDIV and UDIV 2 to 12, a pipeline refill P of 1 to 3 cycles. Flash:
+        // RM0440, "Read access latency", four wait states above 136 MHz in range 1 boost; category
+        // 2 devices read 64 bits.
+        Target::CortexM4 => Chip {
+            name: "STM32G431 at 170 MHz, code in flash",
+            division: 12,
+            refill: 3,
+            not_taken: 0,
+            waits: 4,
+            line: 8,
+        },
+        // Core: Cortex-M0 Technical Reference Manual, DDI 0432C, Table 3-1, with the multiplier of
+        // one cycle: loads and stores of n words 1 + n, B 3 when taken, BX 3, BL 4, POP with PC
+        // 4 + n. No division. Flash: RM0360, FLASH_ACR, one wait state above 24 MHz; "Flash memory
+        // organization", cells of 32 bits.
+        Target::CortexM0 => Chip {
+            name: "STM32F030 at 48 MHz, multiplier of one cycle, code in flash",
+            division: 0,
+            refill: 3,
+            not_taken: 0,
+            waits: 1,
+            line: 4,
+        },
+        // Core: Hazard3's manual, "Instruction Cycle Counts": a load 2 if the next instruction
+        // needs it, MUL and MULH 1, DIV 18 or 19, a jump or mispredicted branch 2, one more to a
+        // 32-bit instruction across a word. SRAM has no wait states; the code's bank and those of
+        // data and stack are used by nothing else.
+        Target::Riscv32 => Chip {
+            name: "RP2350 (Hazard3), code in a bank of SRAM of its own",
+            division: 19,
+            refill: 2,
+            not_taken: 2,
+            waits: 0,
+            line: 4,
+        },
+    }
+}
+
+impl Measure {
+    /// An instruction itself, without what it calls and without the way to the next one.
+    pub fn of_instruction(self, code: &Code, at: u32) -> u32 {
+        let Self::Cycles(chip) = self else {
+            return 1;
+        };
+        let class = code.image.instruction(at).map(Instruction::class);
+        match class {
+            Some(Class::Memory(words)) if code.loads_constants(at) => 1 + words * (1 + chip.waits),
+            Some(Class::Memory(words)) => 1 + words,
+            Some(Class::Divide) => chip.division,
+            Some(Class::Plain) | None => 1,
+        }
+    }
+
+    /// The way to the instruction behind.
+    pub fn of_going_on(self, code: &Code, at: u32, next: u32, flow: &Flow) -> u32 {
+        let Self::Cycles(chip) = self else {
+            return 0;
+        };
+        let entered = chip
+            .last_line(code, next)
+            .saturating_sub(chip.last_line(code, at));
+        let is_branch = !flow.jumps.is_empty();
+        chip.waits * entered + if is_branch { chip.not_taken } else { 0 }
+    }
+
+    /// The way to another instruction by a jump or a call.
+    pub fn of_jump(self, code: &Code, to: u32) -> u32 {
+        let Self::Cycles(chip) = self else {
+            return 0;
+        };
+        let entered = 1 + chip.last_line(code, to).saturating_sub(to / chip.line);
+        chip.refill + chip.waits * (entered + 1)
+    }
+
+    /// The way back to a caller, whose next instruction can be in two lines.
+    pub fn of_return(self) -> u32 {
+        match self {
+            Self::Instructions => 0,
+            Self::Cycles(chip) => chip.refill + chip.waits * 3,
+        }
+    }
+}
+
+impl Chip {
+    /// Number of the line with an instruction's last byte.
+    fn last_line(&self, code: &Code, at: u32) -> u32 {
+        let length = code.image.instruction(at).map_or(2, Instruction::length);
+        (at + length - 1) / self.line
+    }
+}
