@@ -298,14 +298,11 @@ impl<'g> Recorder<'g> {
 
     /// The sample that a record holds: of an angle the upper bits, and with an angle sensor nothing else.
     fn recorded(&self, sample: Sample) -> Sample {
-        let [adc_a, adc_b, adc_c] = sample.adc();
-        match self.host.drive.spec.angle_sensor() {
-            None => sample,
-            Some(_) => {
-                let angle = sample.angle() & !0xff;
-                Sample::with_angle([adc_a, adc_b], angle).third_current(adc_c)
-            }
+        if self.host.drive.spec.angle_sensor().is_none() {
+            return sample;
         }
+        let [adc_a, adc_b, adc_c] = sample.adc();
+        Sample::with_angle([adc_a, adc_b], sample.angle() & !0xff).third_current(adc_c)
     }
 
     /// Fault of the drive.
