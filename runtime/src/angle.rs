@@ -22,6 +22,8 @@ impl AngleSensor {
     /// The sample with the electrical angle, and with the Hall code that sensors would show at it, to a
     /// resolution of 2^-16 of a turn: a [`Supervisor`](crate::Supervisor) knows rotors by their sectors.
     ///
+    /// The checked sample gets the angle by [`Checked::with_angle_of`](crate::Checked::with_angle_of).
+    ///
     /// A sample with a Hall code has no angle: it gets a code that no sensors give, and trips the drive.
     #[inline]
     #[must_use]

@@ -214,9 +214,17 @@ impl<C: Control> ControlLoop<'_, C> {
         }
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
-        let seen = &seen::<C>(sample);
+        let resolved;
+        let seen = match C::ANGLE {
+            // No copy: a drive with Hall sensors pays nothing for the others.
+            None => sample,
+            Some(sensor) => {
+                resolved = sensor.resolve(sample);
+                &resolved
+            }
+        };
         let checked = match core.supervisor.check(limits, sensors, seen, is_demanded) {
-            Some(checked) => checked,
+            Some(checked) => C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen)),
             None => match rest(set_point, core, *sample) {
                 ControlFlow::Continue(checked) => checked,
                 ControlFlow::Break(command) => return command,
@@ -324,9 +332,16 @@ fn rest<C: Control>(
     sample: Sample,
 ) -> ControlFlow<C::Command, Checked> {
     let was_tripped = core.supervisor.fault();
-    let (checked, rest) = core
-        .supervisor
-        .rest(&C::LIMITS, &C::SENSORS, &seen::<C>(&sample));
+    let resolved;
+    let seen = match C::ANGLE {
+        None => &sample,
+        Some(sensor) => {
+            resolved = sensor.resolve(&sample);
+            &resolved
+        }
+    };
+    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, seen);
+    let checked = C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen));
     if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
         keep(set_point, core, sample, fault);
     }
@@ -342,15 +357,6 @@ fn rest<C: Control>(
             C::rest(&mut core.law, &checked, rotor);
             ControlFlow::Break(C::Command::at_rest(state))
         }
-    }
-}
-
-/// The sample as the supervisor and the law see it.
-#[inline]
-fn seen<C: Control>(sample: &Sample) -> Sample {
-    match C::ANGLE {
-        None => *sample,
-        Some(sensor) => sensor.resolve(sample),
     }
 }
 

@@ -121,11 +121,23 @@ impl Sample {
 pub struct Checked {
     pub(crate) i: [Word; 2],
     pub(crate) hall: Word,
-    pub(crate) hall_ticks: Word,
-    pub(crate) angle: Word,
+    /// Ticks, or of a drive with an angle sensor the electrical angle: one word, since the longer a
+    /// checked sample is, the longer each step takes.
+    pub(crate) timing: Word,
 }
 
 impl Checked {
+    /// The same with the electrical angle of a sample that a sensor resolved
+    /// ([`AngleSensor::resolve`](crate::AngleSensor::resolve)), for drives with an angle sensor.
+    #[inline]
+    #[must_use]
+    pub const fn with_angle_of(self, sample: &Sample) -> Self {
+        Self {
+            timing: Word(sample.angle as i32),
+            ..self
+        }
+    }
+
     /// Current of phase a into the motor, ADC counts with the drive's fraction bits.
     #[inline]
     #[must_use]
@@ -147,11 +159,11 @@ impl Checked {
         self.hall
     }
 
-    /// Ticks since the last Hall edge, 0 to 65535.
+    /// Ticks since the last Hall edge, 0 to 65535; of a drive with an angle sensor without meaning.
     #[inline]
     #[must_use]
     pub const fn hall_ticks(&self) -> Word {
-        self.hall_ticks
+        self.timing
     }
 
     /// Electrical angle, bits of a word with 2^32 per turn, 0 where the EMF of phase a rises through 0;
@@ -159,6 +171,6 @@ impl Checked {
     #[inline]
     #[must_use]
     pub const fn angle(&self) -> Word {
-        self.angle
+        self.timing
     }
 }

@@ -228,8 +228,7 @@ mod tests {
         let seen = Checked {
             i: WORDS.currents,
             hall: WORDS.hall,
-            hall_ticks: Word(0),
-            angle: Word(0),
+            timing: Word(0),
         };
         port.answer(seen, WORDS.on, WORDS.observation);
         assert!(!port.is_asked());

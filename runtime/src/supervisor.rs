@@ -673,8 +673,7 @@ impl Supervisor {
         is_fit.then(|| Checked {
             i: sensors.phases.a_and_b(i, third_of(i)),
             hall: hall.into(),
-            hall_ticks: sample.hall_ticks.into(),
-            angle: Word(sample.angle as i32),
+            timing: sample.hall_ticks.into(),
         })
     }
 
@@ -844,8 +843,7 @@ impl Supervisor {
         let checked = Checked {
             i: [within(i_a), within(i_b)],
             hall: hall.into(),
-            hall_ticks: sample.hall_ticks.into(),
-            angle: Word(sample.angle as i32),
+            timing: sample.hall_ticks.into(),
         };
         let [first, second, third] = adc;
         let found = if self.is_at_end(limits, sensors, Unread::First, first)

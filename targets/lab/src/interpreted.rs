@@ -2,7 +2,7 @@
 
 use crate::{Inputs, angle, limits, sensors};
 use hexagen::{
-    AngleSensor, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor,
+    AngleSensor, Checked, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor,
 };
 use hexagen_codegen::interface::{Interface, Watch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
@@ -159,15 +159,17 @@ impl<'g> Interpreted<'g> {
             ..
         } = self;
         let sample = &angle.map_or(*sample, |sensor| sensor.resolve(sample));
+        let with_angle =
+            |checked: Checked| angle.map_or(checked, |_| checked.with_angle_of(sample));
         let is_demanded = machine.params[places.set_point] != 0;
         let checked = match supervisor.check(limits, sensors, sample, || is_demanded) {
-            Some(checked) => checked,
+            Some(checked) => with_angle(checked),
             None => match supervisor.rest(limits, sensors, sample) {
                 (checked, Rest::Legs(leg)) => {
-                    machine.rest(&places.inputs.words(&checked))?;
+                    machine.rest(&places.inputs.words(&with_angle(checked)))?;
                     return Ok(Legs::all(leg));
                 }
-                (checked, Rest::Control) => checked,
+                (checked, Rest::Control) => with_angle(checked),
                 (checked, Rest::Against(direction)) => {
                     if places.has_speed {
                         machine.params[places.set_point] = 0;
@@ -175,7 +177,7 @@ impl<'g> Interpreted<'g> {
                         let most = -i32::MAX * direction.0.signum();
                         machine.set(Setter::Current, &[most])?;
                     }
-                    checked
+                    with_angle(checked)
                 }
             },
         };
