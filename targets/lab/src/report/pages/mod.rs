@@ -119,6 +119,15 @@ fn plotted(data: &Results) -> impl Iterator<Item = (usize, &Variant)> {
     variants.filter(|(_, variant)| !variant.records.is_empty())
 }
 
+/// What tells the rotor's position.
+fn sensor_name(capture: Capture) -> &'static str {
+    match capture {
+        Capture::Sampled => "Hall edges sampled",
+        Capture::Timer => "Hall edges timer",
+        Capture::Angle => "angle sensor",
+    }
+}
+
 /// Name of a capture.
 fn capture_name(capture: Capture) -> &'static str {
     match capture {

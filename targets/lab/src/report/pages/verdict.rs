@@ -1,6 +1,6 @@
 //! Verdict on a motor with its file's own controller, and the best of all variants beside it.
 
-use super::capture_name;
+use super::sensor_name;
 use crate::closed_loop::{LimitOutcome, SpeedLimit};
 use crate::report::{Block, Cell, Column, Table};
 use crate::results::{Results, Run, Variant};
@@ -95,11 +95,11 @@ fn motor(data: &Results) -> String {
 
 fn controller(data: &Results, variant: &Variant, run: &Run) -> String {
     format!(
-        "{}; {}, {}-bit ADC, Hall edges {}",
+        "{}; {}, {}-bit ADC, {}",
         variant.variant,
         quantity(1.0 / data.inverter.t_s, "Hz"),
         data.inverter.adc_bits,
-        capture_name(run.capture),
+        sensor_name(run.capture),
     )
 }
 
