@@ -110,7 +110,7 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
             &origins.given("controller.emf", "estimated"),
             [trust.turn, trust.limit],
             spec.inverter.t_s,
-            trust.filtered,
+            [trust.filtered, spec.angle_sensor().is_some()],
         ));
     }
     warnings.extend(warn_of_bus(spec, origins));

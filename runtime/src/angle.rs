@@ -24,7 +24,7 @@ impl AngleSensor {
     ///
     /// The checked sample gets the angle by [`Checked::with_angle_of`](crate::Checked::with_angle_of).
     ///
-    /// A sample with a Hall code has no angle: it gets a code that no sensors give, and trips the drive.
+    /// A sample with a Hall code other than 0 has no angle: it gets a code that no sensors give, and trips the drive.
     #[inline]
     #[must_use]
     pub const fn resolve(&self, sample: &Sample) -> Sample {

@@ -55,8 +55,8 @@ pub enum Fault {
     /// The currents did not follow the voltages for the `residual_timeout` longer than they did: a dead
     /// current sensor, an open or exchanged phase, a sensor's wrong sign, or wrong motor data.
     Residual = 8,
-    /// Over seven Hall edges in a row the rotor turned faster than `over_speed`: a shaft that is driven,
-    /// a load that was lost, or a speed loop with wrong gains.
+    /// Over seven Hall edges in a row, or with an angle sensor seven periods, the rotor turned faster
+    /// than `over_speed`: a shaft that is driven, a load that was lost, or a speed loop with wrong gains.
     OverSpeed = 10,
     /// A current ADC was at an end of its range: count 0, the largest count, or more.
     AdcRange = 1,

@@ -313,6 +313,7 @@ const LOOSE: &[Row] = &[
                 "angle",
                 &[
                     ("motor", "rotor", "\"angle\""),
+                    ("motor", "angle_pole_pairs", "1"),
                     ("motor", "angle_direction", "\"backward\""),
                     ("motor", "angle_offset", "\"-73.5 deg\""),
                     ("motor", "angle_bits", "14"),

@@ -472,9 +472,14 @@ impl<'a> States<'a> {
             set(name, &|word| word.min(most.max(0) as i32));
         }
         // The speed is zero while it is unknown; the turn is the sum of its intervals.
-        let edges = set("edges", &|word| word);
+        let seen = if self.angle.is_some() {
+            "angles"
+        } else {
+            "edges"
+        };
+        let seen = set(seen, &|word| word);
         for name in SPEEDS {
-            set(name, &|word| if edges == 2 { word } else { 0 });
+            set(name, &|word| if seen >= 2 { word } else { 0 });
         }
         let intervals = ["t1", "t2", "t3", "t4", "t5", "t6"].map(|name| set(name, &|word| word));
         set("rev", &|_| intervals.iter().sum());

@@ -17,6 +17,11 @@ pub struct AngleWords<'b> {
     over_speed: Option<OverSpeedWatch<'b>>,
 }
 
+/// Angles behind which nothing is left of the first difference: three time constants of the filter.
+fn settled(l: &Lowering, sensor: AngleSensor) -> i64 {
+    3 << l.spec.speed_filter(sensor)
+}
+
 impl<'b> AngleWords<'b> {
     /// Declares the state words.
     pub fn new(l: &Lowering<'b>, sensor: AngleSensor) -> Self {
@@ -28,8 +33,8 @@ impl<'b> AngleWords<'b> {
             theta_prev: word("theta_prev", whole, "Electrical angle of the last sample."),
             angles: word(
                 "angles",
-                Interval::new(0, 2),
-                "Angles seen, at most 2: one tells the place, two the speed.",
+                Interval::new(0, settled(l, sensor)),
+                "Angles seen, up to those of three time constants of the filter: one tells the place, two the speed.",
             ),
             step_angle: word(
                 "step_angle",
@@ -57,15 +62,17 @@ impl<'b> AngleWords<'b> {
             i64::from(l.spec.greatest_turn(self.sensor)),
             doc,
         );
+        let doc = "Angles of three time constants of the filter: nothing is left of the first difference.";
+        let enough = l.number("angles_settled", settled(l, self.sensor), doc);
         let (seen, step) = (self.angles.read(), self.step_angle.read());
         named! {
             let turned = theta.angle_sub(self.theta_prev.read()).within(most);
             // Intervals do not show that it lies between the two.
             let filtered = (step + ((turned - step) >> l.spec.speed_filter(self.sensor))).within(most);
             let first = seen.is(1).choose(turned, 0);
-            let step_angle_next = seen.is(2).choose(filtered, first);
-            let angles_next = (seen + 1).min(2);
-            let tracking = angles_next.is(2);
+            let step_angle_next = seen.is_at_least(2).choose(filtered, first);
+            let angles_next = (seen + 1).min(enough);
+            let tracking = angles_next.is_at_least(2);
             let backward = step_angle_next.is_below(0).choose(-1, 0);
             let direction_next = step_angle_next.is_above(0).choose(1, backward);
         }
@@ -76,7 +83,9 @@ impl<'b> AngleWords<'b> {
             let speed = rpm(l.spec.inverter.over_speed.unwrap_or_default());
             let doc = format!("Electrical angle per control period at the over-speed, {speed}.");
             let limit = l.number("over_speed_step", i64::from(most), &doc);
-            watch.count(step_angle_next.abs().is_above(limit));
+            // The first difference may be wrong, as the first reading of a sensor often is, and the filter keeps it.
+            let is_settled = seen.is_at_least(enough);
+            watch.count(is_settled & step_angle_next.abs().is_above(limit));
         }
         Rotor {
             direction: direction_next,

@@ -8,7 +8,7 @@ use crate::ir::{Expr, Flag, Interval, Memory, named};
 /// The state word.
 pub const OVER_SPEED_COUNT: &str = "over_speed_count";
 
-/// Edges or periods in a row that trip. A turn is the mean of six intervals, so the first and the last of seven
+/// Edges or periods in a row that trip. Of edges: a turn is the mean of six intervals, so the first and the last of seven
 /// share none: a single wrong interval, also one that stands for all six, is not in all.
 pub const OVER_SPEED_EDGES: i32 = 7;
 

@@ -59,7 +59,7 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let most = (lowest / line).min(inverter.maximum_speed);
     if spec
         .waiting_speed()
-        .is_some_and(|from| inverter.minimum_speed <= from)
+        .is_some_and(|from| spec.angle_sensor().is_some() || inverter.minimum_speed <= from)
     {
         return most;
     }

@@ -1,7 +1,7 @@
 //! An angle sensor in place of Hall sensors: how its word becomes the electrical angle.
 
 use super::words::words;
-use super::{RotorSensing, Spec};
+use super::{InverterSpec, RotorSensing, Spec};
 use std::f64::consts::TAU;
 
 words! {
@@ -38,7 +38,7 @@ const STEP_SHARE: f64 = 0.002;
 /// rotor late that speeds up.
 const SLOWEST_FILTER: u32 = 6;
 
-/// Greatest angle per period over that at the maximum speed.
+/// Greatest angle per period over that at the fastest speed.
 const SPARE: f64 = 1.25;
 
 /// A twelfth of a turn.
@@ -77,10 +77,17 @@ impl Spec {
         (periods.log2().ceil() as u32).clamp(1, SLOWEST_FILTER)
     }
 
-    /// Greatest difference of two angles in a row that is believed, 2^32 a turn: that at the maximum speed, some more,
-    /// and a step of the sensor, at most 30 degrees.
+    /// Greatest difference of two angles in a row that is believed, 2^32 a turn: that at the maximum speed, or at the
+    /// over-speed if that is more, a quarter more, and a step of the sensor, at most 30 degrees. The checks keep both
+    /// speeds a quarter below these.
     pub fn greatest_turn(&self, sensor: AngleSensor) -> i32 {
-        let turn = SPARE * self.turn_at(self.inverter.maximum_speed) + sensor.step();
+        let InverterSpec {
+            maximum_speed,
+            over_speed,
+            ..
+        } = self.inverter;
+        let fastest = over_speed.map_or(maximum_speed, |speed| speed.max(maximum_speed));
+        let turn = SPARE * self.turn_at(fastest) + sensor.step();
         turn.min(TWELFTH).ceil() as i32
     }
 
@@ -88,6 +95,6 @@ impl Spec {
     pub fn over_speed_step(&self) -> Option<i32> {
         let step = self.turn_at(self.inverter.over_speed?);
         // Decimal units may round a whole number.
-        Some((step + 1e-6).floor().min(TWELFTH) as i32)
+        Some((step + 1e-6).floor() as i32)
     }
 }

@@ -202,7 +202,7 @@ static int32_t now;
 /* A controlled period, whose words all contain its number. */
 static void answer(void)
 {
-    const hexagen_checked checked = { now, -2 * now, now % 6 + 1, 0 };
+    const hexagen_checked checked = { now, -2 * now, now % 6 + 1, 0, 0 };
     const hexagen_legs legs = { { (uint16_t)now, 0, (uint16_t)now },
         { HEXAGEN_LEG_PULSED, HEXAGEN_LEG_OFF, HEXAGEN_LEG_LOW } };
     const hexagen_observation observation = { now, now, -now };

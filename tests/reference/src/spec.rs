@@ -532,11 +532,11 @@ impl Spec {
                 "expected at most 1",
             ));
         }
-        if !(inverter.angle_filter <= 16 && i32::try_from(inverter.turn_max).is_ok()) {
+        if !(inverter.angle_filter <= 6 && i32::try_from(inverter.turn_max).is_ok()) {
             return Err(Error::field(
                 "inverter.turn_max",
                 inverter.turn_max,
-                "expected less than half a turn, and a filter of at most 16 bits",
+                "expected less than half a turn, and a filter of at most 6 bits",
             ));
         }
         self.check_controller()?;

@@ -160,14 +160,19 @@ pub fn printed_table(at: &Location) -> Diagnostic {
 }
 
 /// The EMF turns by `turn` in a period of `t_s` seconds, above the `limit` of the estimate; both in
-/// electrical degrees. `filtered`: the limit comes from the filter.
+/// electrical degrees. `filtered`: the limit comes from the filter; `has_angle`: there are no Hall edges.
 pub fn estimate_turns_too_far(
     at: &Location,
     given: &str,
     [turn, limit]: [f64; 2],
     t_s: f64,
-    filtered: bool,
+    [filtered, has_angle]: [bool; 2],
 ) -> Diagnostic {
+    let timer = if has_angle {
+        ""
+    } else {
+        " and `hall_capture: timer`"
+    };
     let [turned, limited] = [turn, limit].map(significant);
     let (consequence, remedy) = if filtered {
         ("the estimate cannot follow", "a greater `emf_filter`, ")
@@ -179,7 +184,7 @@ pub fn estimate_turns_too_far(
         Code::EstimateTurnsTooFar,
         at,
         format!(
-            "`emf`: {given}, but the EMF turns {turned} electrical degrees per control period at rated speed; above {limited} {consequence}; choose {remedy}`emf: observer` with `reference: proportional` and `hall_capture: timer`, or a control period of at most {period}"
+            "`emf`: {given}, but the EMF turns {turned} electrical degrees per control period at rated speed; above {limited} {consequence}; choose {remedy}`emf: observer` with `reference: proportional`{timer}, or a control period of at most {period}"
         ),
     )
 }

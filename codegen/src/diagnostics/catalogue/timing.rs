@@ -136,7 +136,7 @@ pub fn speed_order(speed: &Part, relation: &str, other: &Part) -> Diagnostic {
 pub fn too_few_periods(
     speed: &Part,
     period: &Part,
-    periods: f64,
+    [periods, least]: [f64; 2],
     fastest: f64,
     f_pwm: f64,
 ) -> Diagnostic {
@@ -145,7 +145,7 @@ pub fn too_few_periods(
             Code::TooFewPeriods,
             &speed.location,
             format!(
-                "`maximum_speed`: {} leaves {} control periods per electrical turn, below 6; lower it to {} or raise `f_pwm` to {}",
+                "`maximum_speed`: {} leaves {} control periods per electrical turn, below {least}; lower it to {} or raise `f_pwm` to {}",
                 speed.given,
                 significant(periods),
                 rpm_at_most(fastest),
@@ -165,7 +165,7 @@ pub fn over_speed(speed: &Part, rated: &Part, period: &Part, range: [f64; 2]) ->
             Code::OverSpeed,
             &speed.location,
             format!(
-                "`over_speed`: {} lies outside {}, where a turn is a control period shorter than at `rated_speed` {}, to {}, beyond which a sector may pass unseen; give a speed within, or raise `f_pwm`",
+                "`over_speed`: {} lies outside {}, where a turn is a control period shorter than at `rated_speed` {}, to {}, beyond which it is not measured; give a speed within, or raise `f_pwm`",
                 speed.given,
                 rpm_at_least(least),
                 rated.given,

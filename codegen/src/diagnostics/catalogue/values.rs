@@ -1,7 +1,8 @@
 //! Texts about single values: spelling, unit, basis, limits.
 
+use super::Part;
 use super::structure::did_you_mean;
-use crate::diagnostics::{Code, Diagnostic, Location, list};
+use crate::diagnostics::{Code, Diagnostic, Location, list, significant};
 
 /// A value that cannot be read.
 pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
@@ -307,6 +308,19 @@ pub fn angle_pole_pairs(at: &Location, pairs: u32, all: u32) -> Diagnostic {
         at,
         format!(
             "`angle_pole_pairs`: {pairs} does not divide the motor's {all} pole pairs, so that the electrical angle at the sensor's zero would differ from turn to turn; give {all} for a sensor on the shaft, or 1 for an electrical angle",
+        ),
+    )
+}
+
+/// An angle sensor that is too coarse: electrical degrees of its step, their limit, and the bits that suffice.
+pub fn angle_bits(bits: &Part, [step, most, enough]: [f64; 3]) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        &bits.location,
+        format!(
+            "`angle_bits`: {} makes steps of {} electrical degrees, above {most}; use a sensor of at least {enough} bits, or Hall sensors",
+            bits.given,
+            significant(step),
         ),
     )
 }

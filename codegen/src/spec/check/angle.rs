@@ -35,18 +35,25 @@ pub(super) fn refuse(
     }
 }
 
-/// The source of the position, and the angle sensor. Of the latter none with Hall sensors, and together with an error.
+/// Largest step of a sensor, electrical degrees: a coarser one tells the angle worse than Hall sensors do between
+/// their edges.
+const COARSEST: f64 = 3.0;
+
+/// The source of the position, none if it cannot be read, and the angle sensor. Of the latter none with Hall sensors,
+/// and together with an error.
 pub(super) fn read(
     reader: &Reader,
     pole_pairs: Option<u32>,
     errors: &mut Collector,
-) -> (RotorSource, Option<AngleSensor>) {
-    let source = reader
-        .choice(errors, "rotor", &[])
-        .unwrap_or(RotorSource::Halls);
+) -> (Option<RotorSource>, Option<AngleSensor>) {
+    let source = match (reader.field("rotor"), reader.choice(errors, "rotor", &[])) {
+        (None, _) => RotorSource::Halls,
+        (Some(_), Some(source)) => source,
+        (Some(_), None) => return (None, None),
+    };
     if source == RotorSource::Halls {
         refuse(reader, &OF_ANGLE, RotorSource::Angle, errors);
-        return (source, None);
+        return (Some(source), None);
     }
     refuse(
         reader,
@@ -54,7 +61,7 @@ pub(super) fn read(
         RotorSource::Halls,
         errors,
     );
-    (source, sensor(reader, pole_pairs, errors))
+    (Some(source), sensor(reader, pole_pairs, errors))
 }
 
 fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> Option<AngleSensor> {
@@ -64,6 +71,15 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
     let offset = reader.plain_quantity(errors, "angle_offset");
     let direction = reader.choice(errors, "angle_direction", &[]);
     let bits = reader.integer(errors, "angle_bits");
+    if !is_given(PAIRS) {
+        let at = reader
+            .field("rotor")
+            .map_or(reader.location(), |field| &field.location);
+        let example =
+            "7 (a sensor on the shaft of a motor of 7 pole pairs), or 1 (an electrical angle)";
+        errors.push(catalogue::needed_field(at, "rotor: angle", PAIRS, example));
+        return None;
+    }
     let is_read = pairs.is_some() == is_given(PAIRS)
         && offset.is_some() == is_given("angle_offset")
         && direction.is_some() == is_given("angle_direction")
@@ -76,6 +92,14 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
         errors.push(catalogue::angle_pole_pairs(&part.location, pairs, all));
         return None;
     }
+    let bits = bits.unwrap_or(BITS);
+    let step = f64::from(pairs) * 360.0 / f64::from(bits).exp2();
+    if step > COARSEST {
+        let part = reader.part("angle_bits", || bits.to_string());
+        let enough = (f64::from(pairs) * 360.0 / COARSEST).log2().ceil();
+        errors.push(catalogue::angle_bits(&part, [step, COARSEST, enough]));
+        return None;
+    }
     let sign = match direction.unwrap_or(AngleDirection::Forward) {
         AngleDirection::Forward => 1,
         AngleDirection::Backward => -1,
@@ -83,7 +107,7 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
     is_read.then(|| AngleSensor {
         turns: sign * pairs as i32,
         offset_deg: offset.map_or(0.0, |given| given.si),
-        bits: bits.unwrap_or(BITS),
+        bits,
     })
 }
 
@@ -94,7 +118,7 @@ pub(super) fn refuse_halls(
     names: &[&'static str],
     errors: &mut Collector,
 ) {
-    if motor.rotor == RotorSource::Angle {
+    if motor.rotor == Some(RotorSource::Angle) {
         refuse(reader, names, RotorSource::Halls, errors);
     }
 }

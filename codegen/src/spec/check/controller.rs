@@ -70,12 +70,10 @@ pub(super) fn read(
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = (kind.read)(&reader, &surroundings, errors);
+    angle::refuse_halls(&reader, motor, &["hall_capture"], errors);
     let sensing = match motor.rotor {
-        RotorSource::Halls => read_capture(&reader, inverter, errors),
-        RotorSource::Angle => {
-            angle::refuse_halls(&reader, motor, &["hall_capture"], errors);
-            motor.angle.map(RotorSensing::Angle)
-        }
+        Some(RotorSource::Halls) => read_capture(&reader, inverter, errors),
+        Some(RotorSource::Angle) | None => motor.angle.map(RotorSensing::Angle),
     };
     (controller, sensing)
 }

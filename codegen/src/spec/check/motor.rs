@@ -30,7 +30,8 @@ pub(super) struct Motor<'a> {
     pub resistance_tolerance: f64,
     /// None with Hall sensors, and together with an error.
     pub angle: Option<AngleSensor>,
-    pub rotor: RotorSource,
+    /// None together with an error.
+    pub rotor: Option<RotorSource>,
     pub hall_codes: [u8; 6],
     pub hall_angles: [f64; 6],
 }

@@ -17,6 +17,10 @@ const GREATEST_AGE: f64 = 65_000.0;
 /// Fewest control periods per electrical turn: one per sector.
 const LEAST_PERIODS: f64 = 6.0;
 
+/// The same with an angle sensor, also at the over-speed: differences of angles are believed up to 30 degrees, and
+/// a quarter more than at the greatest speed must be seen.
+const LEAST_WITH_ANGLE: f64 = 15.0;
+
 /// Fewest control periods per electrical turn at the over-speed. More than one per sector: a rotor that
 /// speeds up, or sensors out of place, must not skip a sector before seven edges have told the speed.
 const LEAST_WATCHED: f64 = 8.0;
@@ -132,14 +136,19 @@ pub(super) fn check_speeds(
     // A sample in the narrowest sector.
     let [narrowest, widest] = motor.extreme_sectors();
     let periods = TAU / (maximum * pole_pairs * t_s) * narrowest;
-    if periods < LEAST_PERIODS * (1.0 - 1e-9) {
-        let fastest = maximum * periods / LEAST_PERIODS;
-        let f_pwm = f64::from(inverter.pwm_per_control)
-            / inverter.period_within(t_s * periods / LEAST_PERIODS);
+    let least = if matches!(capture, Some(RotorSensing::Angle(_))) {
+        LEAST_WITH_ANGLE
+    } else {
+        LEAST_PERIODS
+    };
+    if periods < least * (1.0 - 1e-9) {
+        let fastest = maximum * periods / least;
+        let f_pwm =
+            f64::from(inverter.pwm_per_control) / inverter.period_within(t_s * periods / least);
         errors.push(catalogue::too_few_periods(
             maximum_part,
             &period.part,
-            periods,
+            [periods, least],
             fastest,
             f_pwm,
         ));
@@ -169,7 +178,12 @@ pub(super) fn check_over_speed(
     // The same of speeds and of control periods: the one of the other.
     let turn = |of: f64| TAU / (of * pole_pairs * t_s);
     let [narrowest, _] = motor.extreme_sectors();
-    let fastest = turn(LEAST_WATCHED / narrowest);
+    let watched = if motor.angle.is_some() {
+        LEAST_WITH_ANGLE
+    } else {
+        LEAST_WATCHED
+    };
+    let fastest = turn(watched / narrowest);
     let least = turn((turn(rated.si) - 1.0).max(1.0));
     let is_within = least * (1.0 - 1e-9) <= given.si && given.si <= fastest * (1.0 + 1e-9);
     if !is_within {

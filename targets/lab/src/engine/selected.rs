@@ -262,6 +262,9 @@ impl PlantOptions {
             }
         }
         plant.hall_error_deg = self.hall_error.unwrap_or(plant.hall_error_deg);
+        if let (Some(sensor), Some([error, ..])) = (&mut plant.angle, self.hall_error) {
+            sensor.offset_deg += error;
+        }
         plant.mechanics = self.inertia.map(|inertia| Mechanics {
             inertia,
             opposing_torque: self.load.unwrap_or(0.0),

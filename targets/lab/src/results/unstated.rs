@@ -56,10 +56,16 @@ fn line(name: &str, value: &str) -> String {
     }
 }
 
+/// Fields of Hall sensors.
+const OF_HALLS: [&str; 3] = ["hall_codes", "minimum_speed", "hall_glitches"];
+
 /// The fields that have a default value; those without effect on this drive are left out.
 pub fn unstated(spec: &Spec) -> Vec<Unstated> {
     let mut fields = of_motor(spec);
     fields.extend(of_inverter(spec));
+    if spec.angle_sensor().is_some() {
+        fields.retain(|field| !OF_HALLS.contains(&field.name));
+    }
     fields
 }
 

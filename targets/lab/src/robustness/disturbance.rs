@@ -2,7 +2,7 @@
 
 use crate::engine::{PerSensor, PlantOptions};
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::InverterSpec;
+use hexagen_codegen::spec::{InverterSpec, RotorSensing};
 
 /// A plant option.
 type Scale = fn(&mut PlantOptions) -> &mut Option<f64>;
@@ -79,8 +79,18 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
             add(&name, &|plant| plant.dead_time = Some(dead_time));
         }
     }
+    let has_angle = matches!(inverter.rotor_sensing, RotorSensing::Angle(_));
     for (name, error) in HALL_ERRORS {
-        add(name, &|plant| {
+        // An angle sensor is one.
+        let name = if has_angle {
+            name.replace("Hall", "angle")
+        } else {
+            name.to_owned()
+        };
+        if has_angle && error[0] != error[1] {
+            continue;
+        }
+        add(&name, &|plant| {
             let known = plant.hall_error.unwrap_or([0.0; 3]);
             plant.hall_error = Some(std::array::from_fn(|x| known[x] + error[x]));
         });

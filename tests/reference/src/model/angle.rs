@@ -19,6 +19,8 @@ pub struct AngleSensor {
     over_speed: Option<f64>,
     /// Share of a difference that the speed follows at once.
     pub share: f64,
+    /// Angles behind which nothing is left of the first difference.
+    settled: f64,
 }
 
 impl AngleSensor {
@@ -32,6 +34,7 @@ impl AngleSensor {
             turn_max: f64::from(inverter.turn_max),
             over_speed: inverter.over_speed_step.map(f64::from),
             share: pow2(-(inverter.angle_filter as i32)),
+            settled: 3.0 * pow2(inverter.angle_filter as i32),
         })
     }
 
@@ -61,12 +64,13 @@ impl AngleSensor {
     ) {
         let wrapped = word::<W>(theta) - timing.theta_prev + pow2(31);
         let turned = within(wrap32(wrapped) - pow2(31), -self.turn_max, self.turn_max);
+        let is_settled = f64::from(timing.edges) >= self.settled;
         timing.step = match timing.edges {
             0 => word(0.0),
             1 => turned,
             _ => timing.step + filtered(turned - timing.step),
         };
-        timing.edges = (timing.edges + 1).min(2);
+        timing.edges = (timing.edges + 1).min(self.settled as u8);
         timing.theta_prev = wrap32(word::<W>(theta + pow2(31))) - pow2(31);
         timing.direction = word(if timing.step > 0.0 {
             1.0
@@ -76,6 +80,6 @@ impl AngleSensor {
             0.0
         });
         let is_over = |most: f64| timing.step > most || timing.step < -most;
-        timing.count_speed(self.over_speed.is_some_and(is_over));
+        timing.count_speed(is_settled && self.over_speed.is_some_and(is_over));
     }
 }

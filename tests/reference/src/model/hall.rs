@@ -59,7 +59,7 @@ pub struct HallTiming<W = f64> {
     pub direction: W,
     /// Ticks from the last edge to the last sample.
     pub age_prev: W,
-    /// 0: nothing known; 1: one edge, or angle, seen; 2: the speed is valid.
+    /// 0: nothing known; 1: one edge, or angle, seen; 2 and more: the speed is valid.
     pub edges: u8,
     /// The last six edge-to-edge intervals, newest first.
     pub intervals: [W; 6],
@@ -107,7 +107,7 @@ impl<W: Word> HallTiming<W> {
     /// What a ramp of the speed has begun at: 1, or 2 once the speed is known.
     #[inline]
     pub fn ramp_known(&self) -> f64 {
-        if self.edges == 2 { 2.0 } else { 1.0 }
+        if self.edges >= 2 { 2.0 } else { 1.0 }
     }
 
     /// By how many ticks the last half turn was shorter than the one before, less the tick that both may differ by at constant

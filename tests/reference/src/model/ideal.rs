@@ -629,7 +629,7 @@ impl Ideal {
         let timing = &self.state.timing;
         if self.sensor.is_some() {
             timing.step.abs() * RADIANS
-        } else if timing.edges == 2 {
+        } else if timing.edges >= 2 {
             TAU / timing.rev.max(self.clock.rev_min)
         } else {
             0.0
@@ -650,7 +650,7 @@ impl Ideal {
     /// The same of a sensor's angle, as a word.
     fn sensed(&self, theta: f64, sector: usize) -> (f64, f64, usize) {
         let (theta, step_angle) = (theta * RADIANS, self.state.timing.step * RADIANS);
-        let sector_eff = if self.variant.options.advance > 0.0 && self.state.timing.edges == 2 {
+        let sector_eff = if self.variant.options.advance > 0.0 && self.state.timing.edges >= 2 {
             let ahead = theta + self.variant.options.advance * step_angle + FRAC_PI_6;
             (ahead / FRAC_PI_3).floor().rem_euclid(6.0) as usize + 1
         } else {
@@ -673,7 +673,7 @@ impl Ideal {
         let progress = ((omega * timing.age_prev).min(end) * ahead).min(end);
         let turn = (omega * self.clock.period).min(FRAC_PI_6) * ahead;
         let step_angle = timing.direction * turn.min(FRAC_PI_6);
-        let in_sector = if timing.edges != 2 {
+        let in_sector = if timing.edges < 2 {
             width / 2.0
         } else if timing.direction > 0.0 {
             progress
@@ -682,7 +682,7 @@ impl Ideal {
         };
         let in_sector = beyond + in_sector;
         let theta = sector as f64 * FRAC_PI_3 - FRAC_PI_3 - FRAC_PI_6 + in_sector;
-        let sector_eff = if timing.edges == 2 && sector != 0 {
+        let sector_eff = if timing.edges >= 2 && sector != 0 {
             let ahead = ((in_sector + self.variant.options.advance * step_angle) / FRAC_PI_3)
                 .floor() as i64;
             (sector as i64 - 1 + ahead).rem_euclid(6) as usize + 1

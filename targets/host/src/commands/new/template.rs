@@ -120,8 +120,8 @@ const MOTOR: &[Line] = &[
     needed(&["inertia"], "Of the rotor; needed for speed control.", "24 g cm2").optional(),
     needed(
         &["rotor"],
-        "An encoder or a resolver in place of Hall sensors; then also angle_pole_pairs (those of the motor for a\n\
-         # sensor on the shaft), angle_offset, angle_direction and angle_bits.",
+        "An encoder or a resolver in place of Hall sensors; then also angle_pole_pairs (those of the motor for\n\
+         # a sensor on the shaft), angle_offset, angle_direction and angle_bits.",
         "angle",
     )
     .optional(),

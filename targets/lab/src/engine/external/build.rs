@@ -54,8 +54,9 @@ impl BuildError {
 }
 
 /// The runtime's sources, by a link to their folder, which a package contains as a folder.
-const RUNTIME: [(&str, &str); 19] = [
+const RUNTIME: [(&str, &str); 20] = [
     ("lib.rs", include_str!("../../../runtime/lib.rs")),
+    ("angle.rs", include_str!("../../../runtime/angle.rs")),
     ("arith.rs", include_str!("../../../runtime/arith.rs")),
     ("bus.rs", include_str!("../../../runtime/bus.rs")),
     (

@@ -45,7 +45,7 @@ pub fn corrected_error<W: Word>(
     [x, y]: [W; 2],
     shape: [W; 2],
 ) -> [W; 2] {
-    if state.timing.edges != 2 {
+    if state.timing.edges < 2 {
         return state.emf_error;
     }
     let believed = |volts: W| within(volts, -k.emf_error_limit, k.emf_error_limit - 1.0);

@@ -54,7 +54,7 @@ impl<W: Word> ResidualWatch<W> {
     ) -> W {
         let [a, b] = residual.map(W::abs);
         let learnt = greater(q.abs(), d.abs() * 2.0);
-        let (seen, by_speed) = if state.timing.edges == 2 {
+        let (seen, by_speed) = if state.timing.edges >= 2 {
             (learnt, self.per_angle.mul(step_angle.abs()))
         } else {
             (greater(a, b) - learnt, word(self.unseen))

@@ -95,7 +95,7 @@ fn advanced<W: Word>(
     (theta, step): (W, W),
     sector: usize,
 ) -> usize {
-    if !k.advanced || timing.edges != 2 {
+    if !k.advanced || timing.edges < 2 {
         return sector;
     }
     let ahead = wrap32(theta + k.k_advance.mul(step) + TWELFTH);
@@ -111,7 +111,7 @@ pub fn angle<W: Word>(
     event: &HallEvent,
 ) -> Angle<W> {
     let timing = &state.timing;
-    let turning = timing.edges == 2;
+    let turning = timing.edges >= 2;
     let mut speed = state.speed;
     if !turning {
         (speed.omega, speed.step) = (word(0.0), word(0.0));

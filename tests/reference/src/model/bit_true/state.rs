@@ -98,15 +98,15 @@ impl WordValue for Vector {
     }
 }
 
-/// The number of observed edges.
+/// The number of observed edges or angles.
 impl WordValue for u8 {
     #[inline]
     fn to_word(&self) -> i32 {
         i32::from(*self)
     }
 
-    fn set_word(&mut self, word: i32, _range: (i32, i32)) {
-        *self = word.clamp(0, 2) as u8;
+    fn set_word(&mut self, word: i32, (low, high): (i32, i32)) {
+        *self = word.clamp(low, high) as u8;
     }
 }
 

@@ -84,7 +84,7 @@ impl Ideal {
 
     /// Error of the modelled EMF, q and d, corrected by the residual of the period that has ended.
     pub(super) fn corrected_error(&self, [x, y]: [f64; 2], shape: &Vector2<f64>) -> [f64; 2] {
-        if self.state.timing.edges != 2 {
+        if self.state.timing.edges < 2 {
             return self.state.emf_error;
         }
         let believed = |volts: f64| volts.clamp(-self.emf_error_limit, self.emf_error_limit);
@@ -113,7 +113,7 @@ impl Ideal {
         let [a, b] = residual.map(f64::abs);
         let [least, per_ampere, per_speed, unseen] = self.allowed_residual;
         let learnt = q.abs().max(2.0 * d.abs());
-        let (seen, by_speed) = if self.state.timing.edges == 2 {
+        let (seen, by_speed) = if self.state.timing.edges >= 2 {
             (learnt, per_speed * step_angle.abs() / self.t_s)
         } else {
             (a.max(b) - learnt, unseen)
