@@ -1,6 +1,9 @@
 //! The over-speed watch in closed loop: a driven shaft trips the drive soon behind the stated speed, and
 //! a motor at its rated speed does not.
 
+mod encoder;
+
+use encoder::with_encoder;
 use hexagen::Fault;
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop};
 use hexagen_lab::engine::{
@@ -23,7 +26,15 @@ const MOTORS: [&str; 3] = ["trivedi-keshri-660w", "hurst-long", "teknic-m2310p"]
 
 /// A motor of the library whose over-speed is this, of its plain drive.
 fn drive(motor: &str, law: &str, over_speed: impl Fn(&Prepared) -> f64) -> Prepared {
-    let mut source = MotorSource::of_library(motor).expect("is in the library");
+    let source = MotorSource::of_library(motor).expect("is in the library");
+    drive_of((motor, source), law, over_speed)
+}
+
+fn drive_of(
+    (motor, mut source): (&str, MotorSource),
+    law: &str,
+    over_speed: impl Fn(&Prepared) -> f64,
+) -> Prepared {
     let of = |source: &MotorSource| {
         prepare(source, Some(law)).unwrap_or_else(|why| panic!("{motor} {law}: {why}"))
     };
@@ -84,6 +95,26 @@ fn a_driven_shaft_trips_within_two_turns() {
     });
 }
 
+#[test]
+fn a_driven_shaft_with_an_encoder_trips_within_two_turns() {
+    for motor in MOTORS {
+        let plain = drive(motor, "pdcc", |plain| 1.3 * plain.spec.motor.rated_speed);
+        let encoder = with_encoder(motor, plain.spec.motor.pole_pairs);
+        let rated = plain.spec.motor.rated_speed * 60.0 / TAU;
+        // Also where that is above the greatest speed.
+        let field = format!("[inverter]\nmaximum_speed = \"{rated} rpm\"\n");
+        for fields in ["[inverter]\n", &field] {
+            let mut source = encoder.clone();
+            source.text = source.text.replacen("[inverter]\n", fields, 1);
+            let drive = drive_of((motor, source), "pdcc", |plain| {
+                1.3 * plain.spec.motor.rated_speed
+            });
+            let turns = turns_until_trip(&drive);
+            assert!(turns < 2.0, "{motor} {fields}: {turns} turns");
+        }
+    }
+}
+
 /// The least over-speed that is accepted: its turn is a period shorter than that at rated speed.
 fn least(plain: &Prepared) -> f64 {
     let (motor, inverter) = (&plain.spec.motor, &plain.spec.inverter);
@@ -109,9 +140,14 @@ fn trip_at_rated_speed(drive: &Prepared) -> Option<Fault> {
 #[test]
 fn no_motor_of_the_library_trips_at_its_rated_speed() {
     // Of laws that every motor takes.
-    let laws = ["pdcc:hall_capture=timer", "pi-pwm:hall_capture=sampled"];
+    let laws = [
+        ["pdcc:hall_capture=timer", "pdcc"],
+        ["pi-pwm:hall_capture=sampled", "pi-pwm"],
+    ];
     library().par_iter().for_each(|motor| {
-        for law in laws {
+        let source = MotorSource::from(motor);
+        let has_angle = source.text.contains("rotor = \"angle\"");
+        for law in laws.map(|[halls, angle]| if has_angle { angle } else { halls }) {
             let fault = trip_at_rated_speed(&drive(motor.name, law, least));
             assert_eq!(fault, None, "{} {law}", motor.name);
         }

@@ -75,9 +75,13 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
         let at = reader
             .field("rotor")
             .map_or(reader.location(), |field| &field.location);
-        let example =
-            "7 (a sensor on the shaft of a motor of 7 pole pairs), or 1 (an electrical angle)";
-        errors.push(catalogue::needed_field(at, "rotor: angle", PAIRS, example));
+        let of_shaft = pole_pairs.unwrap_or(7).to_string();
+        errors.push(catalogue::needed_field(
+            at,
+            "rotor: angle",
+            PAIRS,
+            &of_shaft,
+        ));
         return None;
     }
     let is_read = pairs.is_some() == is_given(PAIRS)
