@@ -81,7 +81,14 @@ fn obstacle(board: &Numbers, motor: &Spec, stated: &Stated) -> Option<&'static s
         Some("HX0317")
     } else if per_period > 0.5 {
         Some("HX0301")
-    } else if turns > 1.0 / 6.0 {
+    } else if turns
+        > 1.0
+            / if motor.angle_sensor().is_some() {
+                15.0
+            } else {
+                6.0
+            }
+    {
         Some("HX0312")
     } else {
         None

@@ -120,9 +120,14 @@ const MOTOR: &[Line] = &[
     needed(&["inertia"], "Of the rotor; needed for speed control.", "24 g cm2").optional(),
     needed(
         &["rotor"],
-        "An encoder or a resolver in place of Hall sensors; then also angle_pole_pairs (those of the motor for\n\
-         # a sensor on the shaft), angle_offset, angle_direction and angle_bits.",
+        "An encoder or a resolver in place of Hall sensors; then also angle_offset, angle_direction and angle_bits.",
         "angle",
+    )
+    .optional(),
+    needed(
+        &["angle_pole_pairs"],
+        "Electrical turns in a turn of the angle: the pole pairs for a sensor on the shaft, 1 for an electrical angle.",
+        "1",
     )
     .optional(),
 ];
