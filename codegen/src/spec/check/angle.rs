@@ -16,24 +16,8 @@ const OF_ANGLE: [&str; 4] = [
     "angle_bits",
 ];
 
-/// Refuses fields that have an effect only with another source of the position.
-pub(super) fn refuse(
-    reader: &Reader,
-    names: &[&'static str],
-    source: RotorSource,
-    errors: &mut Collector,
-) {
-    let setting = match source {
-        RotorSource::Halls => "rotor: halls",
-        RotorSource::Angle => "rotor: angle",
-    };
-    for name in names {
-        if let Some(field) = reader.field(name) {
-            let (at, given) = (&field.location, field.value.to_string());
-            errors.push(catalogue::needless_field(at, name, &given, setting));
-        }
-    }
-}
+/// The setting with which fields of Hall sensors have an effect.
+const HALLS: &str = "rotor: halls";
 
 /// Largest step of a sensor, electrical degrees: a coarser one tells the angle worse than Hall sensors do between
 /// their edges.
@@ -52,15 +36,10 @@ pub(super) fn read(
         (Some(_), None) => return (None, None),
     };
     if source == RotorSource::Halls {
-        refuse(reader, &OF_ANGLE, RotorSource::Angle, errors);
+        reader.refuse_without(errors, "rotor: angle", &OF_ANGLE);
         return (Some(source), None);
     }
-    refuse(
-        reader,
-        &["hall_codes", "hall_angles"],
-        RotorSource::Halls,
-        errors,
-    );
+    reader.refuse_without(errors, HALLS, &["hall_codes", "hall_angles"]);
     (Some(source), sensor(reader, pole_pairs, errors))
 }
 
@@ -72,16 +51,8 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
     let direction = reader.choice(errors, "angle_direction", &[]);
     let bits = reader.integer(errors, "angle_bits");
     if !is_given(PAIRS) {
-        let at = reader
-            .field("rotor")
-            .map_or(reader.location(), |field| &field.location);
         let of_shaft = pole_pairs.unwrap_or(7).to_string();
-        errors.push(catalogue::needed_field(
-            at,
-            "rotor: angle",
-            PAIRS,
-            &of_shaft,
-        ));
+        reader.require_beside(errors, ["rotor", "angle"], &[(PAIRS, &of_shaft)]);
         return None;
     }
     let is_read = pairs.is_some() == is_given(PAIRS)
@@ -116,13 +87,8 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
 }
 
 /// Refuses the inverter's and the controller's fields of Hall sensors beside an angle sensor.
-pub(super) fn refuse_halls(
-    reader: &Reader,
-    motor: &Motor,
-    names: &[&'static str],
-    errors: &mut Collector,
-) {
+pub(super) fn refuse_halls(reader: &Reader, motor: &Motor, names: &[&str], errors: &mut Collector) {
     if motor.rotor == Some(RotorSource::Angle) {
-        refuse(reader, names, RotorSource::Halls, errors);
+        reader.refuse_without(errors, HALLS, names);
     }
 }

@@ -136,16 +136,8 @@ fn read_capture(
     }
     let Some(clock) = &inverter.hall_timer_clock else {
         if !inverter.hall_timer_clock_given {
-            let at = reader
-                .field("hall_capture")
-                .map_or(reader.location(), |field| &field.location);
-            let setting = "hall_capture: timer";
-            errors.push(catalogue::needed_field(
-                at,
-                setting,
-                "hall_timer_clock",
-                "1 MHz",
-            ));
+            let clock = [("hall_timer_clock", "1 MHz")];
+            reader.require_beside(errors, ["hall_capture", "timer"], &clock);
         }
         return None;
     };

@@ -85,15 +85,7 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Option<Stated> {
 fn refuse_others(reader: &Reader, kind: Kind, errors: &mut Collector) {
     let of_others = OF_KIND.iter().filter(|(_, of, _)| *of != kind);
     for (name, _, needed) in of_others {
-        if reader.field(name).is_some() {
-            let part = reader.part(name, String::new);
-            errors.push(catalogue::needless_field(
-                &part.location,
-                name,
-                &part.given,
-                needed,
-            ));
-        }
+        reader.refuse_without(errors, needed, &[name]);
     }
 }
 

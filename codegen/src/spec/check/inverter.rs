@@ -130,32 +130,10 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
         .word(errors, "v_bus", &[("fixed", false), ("measured", true)])
         .or_else(|| reader.field("v_bus").is_none().then_some(false))?;
     if !measured {
-        for name in OF_MEASURED {
-            if let Some(field) = reader.field(name) {
-                let (at, given) = (&field.location, field.value.to_string());
-                errors.push(catalogue::needless_field(
-                    at,
-                    name,
-                    &given,
-                    "v_bus: measured",
-                ));
-            }
-        }
+        reader.refuse_without(errors, "v_bus: measured", &OF_MEASURED);
         return Some(BusSource::Fixed);
     }
-    for (name, example) in NEEDED {
-        if reader.field(name).is_none() {
-            let at = reader
-                .field("v_bus")
-                .map_or(reader.location(), |field| &field.location);
-            errors.push(catalogue::needed_field(
-                at,
-                "v_bus: measured",
-                name,
-                example,
-            ));
-        }
-    }
+    reader.require_beside(errors, ["v_bus", "measured"], &NEEDED);
     let (nominal, adc_bits, range) = (v_bus?, adc_bits?, range?);
     let low = min.map_or(7.0 * nominal.si / 10.0, |given| given.si);
     let high = max.map_or(13.0 * nominal.si / 10.0, |given| given.si);

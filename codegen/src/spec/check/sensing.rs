@@ -48,7 +48,7 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
         .unwrap_or(SensedPhases::Ab);
     if phases != SensedPhases::Abc {
         let names = ["current_sum_tolerance", "current_sum_samples"];
-        refuse(reader, &names, "sensed_phases: abc", errors);
+        reader.refuse_without(errors, "sensed_phases: abc", &names);
     }
     Sensing {
         phases,
@@ -58,16 +58,6 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
         sum_samples: reader.integer(errors, "current_sum_samples"),
         place: read_place(reader, errors),
         minimum_low_time: time(reader, errors, "minimum_low_time").unwrap_or(0.0),
-    }
-}
-
-/// Refuses fields that have an effect only with another setting.
-fn refuse(reader: &Reader, names: &[&'static str], setting: &str, errors: &mut Collector) {
-    for name in names {
-        if let Some(field) = reader.field(name) {
-            let (at, given) = (&field.location, field.value.to_string());
-            errors.push(catalogue::needless_field(at, name, &given, setting));
-        }
     }
 }
 
@@ -112,18 +102,10 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
             "current_adcs",
             "sampling_lead",
         ];
-        refuse(reader, &names, "current_sensing: low_side", errors);
+        reader.refuse_without(errors, "current_sensing: low_side", &names);
         return Some(CurrentSensing::InPhase);
     }
-    for (name, example) in NEEDED {
-        if reader.field(name).is_none() {
-            let at = reader
-                .field(FIELD)
-                .map_or(reader.location(), |field| &field.location);
-            let setting = "current_sensing: low_side";
-            errors.push(catalogue::needed_field(at, setting, name, example));
-        }
-    }
+    reader.require_beside(errors, [FIELD, LOW_SIDE], &NEEDED);
     Some(CurrentSensing::LowSide(SensingTimes {
         settling: settling?,
         aperture: aperture?,

@@ -96,6 +96,32 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Reports missing fields, each with an example, that the `value` of another one needs.
+    pub fn require_beside(
+        &self,
+        errors: &mut Collector,
+        [of, value]: [&str; 2],
+        fields: &[(&str, &str)],
+    ) {
+        for (name, example) in fields {
+            if self.field(name).is_none() {
+                let at = self.field(of).map_or(&self.at, |field| &field.location);
+                let setting = format!("{of}: {value}");
+                errors.push(catalogue::needed_field(at, &setting, name, example));
+            }
+        }
+    }
+
+    /// Reports fields that have an effect only with another `setting`.
+    pub fn refuse_without(&self, errors: &mut Collector, setting: &str, names: &[&str]) {
+        for name in names {
+            if let Some(field) = self.field(name) {
+                let (at, given) = (&field.location, field.value.to_string());
+                errors.push(catalogue::needless_field(at, name, &given, setting));
+            }
+        }
+    }
+
     /// Reports a missing field whose words are a matter of the hardware; each with its meaning.
     pub fn require_choice(&self, errors: &mut Collector, name: &str, words: &[(&str, &str)]) {
         if self.may_lack(name) {

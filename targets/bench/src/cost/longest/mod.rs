@@ -3,8 +3,8 @@
 //!
 //! It is at least as long as any step on any input. It can be longer, because a path whose
 //! conditions contradict each other counts too, except where they are the same condition flags.
-//! The largest such path has a drive trip anew and then control all the same, or trip for several
-//! reasons at once; so the longest path of a step in control is searched, too.
+//! On the longest path of a drive it trips and controls in one step, or trips for several reasons at
+//! once, which no input does; so the longest path of a step in control is searched, too.
 //! Jumps to addresses from memory, except Thumb's table branches, calls through pointers, recursion
 //! and unbounded loops are refused with the function's name.
 
