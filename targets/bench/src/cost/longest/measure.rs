@@ -4,7 +4,8 @@
 //! its most, and every wait state of the chip's memory: for each line of code that control enters,
 //! for a line that the core had begun to fetch behind a jump, and for each word loaded that is not
 //! on the stack, since tables and literals are in the same memory. Nothing is deducted for
-//! prefetch, caches, or overlap of both.
+//! prefetch, caches, or overlap of both. Where in a line a function begins is the linker's choice,
+//! so that each place is tried.
 
 use super::code::Code;
 use super::flow::Flow;
@@ -26,6 +27,8 @@ pub struct Chip {
     waits: u32,
     /// Bytes of a line of this memory.
     line: u32,
+    /// Bytes by which code is moved from where the linker placed it.
+    moved: u32,
 }
 
 /// What is added up along a path.
@@ -51,6 +54,7 @@ pub fn chip(target: Target) -> Chip {
             not_taken: 0,
             waits: 4,
             line: 8,
+            moved: 0,
         },
         // Core: Cortex-M0 Technical Reference Manual, DDI 0432C, Table 3-1, with the multiplier of
         // one cycle: loads and stores of n words 1 + n, B 3 when taken, BX 3, BL 4, POP with PC
@@ -63,6 +67,7 @@ pub fn chip(target: Target) -> Chip {
             not_taken: 0,
             waits: 1,
             line: 4,
+            moved: 0,
         },
         // Core: Hazard3's manual, "Instruction Cycle Counts": a load 2 if the next instruction
         // needs it, MUL and MULH 1, DIV 18 or 19, a jump or mispredicted branch 2, one more to a
@@ -75,11 +80,23 @@ pub fn chip(target: Target) -> Chip {
             not_taken: 2,
             waits: 0,
             line: 4,
+            moved: 0,
         },
     }
 }
 
 impl Measure {
+    /// This measure for each place in a line where a function can begin.
+    pub fn of_all_places(self) -> Vec<Self> {
+        match self {
+            Self::Cycles(chip) if chip.waits > 0 => (0..chip.line)
+                .step_by(2)
+                .map(|moved| Self::Cycles(Chip { moved, ..chip }))
+                .collect(),
+            Self::Cycles(_) | Self::Instructions => vec![self],
+        }
+    }
+
     /// An instruction itself, without what it calls and without the way to the next one.
     pub fn of_instruction(self, code: &Code, at: u32) -> u32 {
         let Self::Cycles(chip) = self else {
@@ -111,7 +128,8 @@ impl Measure {
         let Self::Cycles(chip) = self else {
             return 0;
         };
-        let entered = 1 + chip.last_line(code, to).saturating_sub(to / chip.line);
+        let first = (to + chip.moved) / chip.line;
+        let entered = 1 + chip.last_line(code, to).saturating_sub(first);
         chip.refill + chip.waits * (entered + 1)
     }
 
@@ -128,6 +146,6 @@ impl Chip {
     /// Number of the line with an instruction's last byte.
     fn last_line(&self, code: &Code, at: u32) -> u32 {
         let length = code.image.instruction(at).map_or(2, Instruction::length);
-        (at + length - 1) / self.line
+        (at + self.moved + length - 1) / self.line
     }
 }

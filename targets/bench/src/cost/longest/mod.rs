@@ -109,8 +109,7 @@ impl<'a> Program<'a> {
     ) -> Result<u32, BenchError> {
         let entry = self.code.image.function(symbol)?.start;
         let longest = Search::new(&self.code, without, measure).longest((entry, None))?;
-        let called = longest.map(|longest| longest + measure.of_jump(&self.code, entry));
-        called.ok_or_else(|| BenchError::Failed(format!("`{symbol}` never returns")))
+        longest.ok_or_else(|| BenchError::Failed(format!("`{symbol}` never returns")))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The longest path through a function and its callees.
 
 use super::code::Code;
-use super::flow::{ANY, Flags, Flow};
+use super::flow::{ANY, Flags};
 use super::loops::{Bound, bound, passes};
 use super::measure::Measure;
 use crate::BenchError;
@@ -38,7 +38,9 @@ struct Body {
     graph: DiGraphMap<Node, u32>,
     /// Length of a node, that of a called function included.
     weights: BTreeMap<Node, u32>,
-    returns: BTreeSet<Node>,
+    /// With the length of the way back to the caller, through the functions at whose entry a path
+    /// goes on for good.
+    returns: BTreeMap<Node, u32>,
 }
 
 impl<'a> Search<'a> {
@@ -52,7 +54,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The longest path from a function's entry to a return, the return included.
+    /// The longest path from a function's call to its return, wherever the linker places the
+    /// function and its callees.
     /// Paths that never return, as those of a panic, are no steps and are left out.
     ///
     /// # Errors
@@ -68,15 +71,20 @@ impl<'a> Search<'a> {
             ));
         }
         self.open.push(call);
-        let body = self.body(call.0)?;
-        let longest = self.longest_of(&body, call)?;
+        let mut longest = None;
+        for measure in self.measure.of_all_places() {
+            let body = self.body(call.0, measure)?;
+            let way = measure.of_jump(self.code, call.0);
+            let placed = self.longest_of(&body, call)?;
+            longest = longest.max(placed.map(|placed| placed + way));
+        }
         self.open.pop();
         self.known.insert(call, longest);
         Ok(longest)
     }
 
     /// Follows control from a function's entry.
-    fn body(&mut self, entry: u32) -> Result<Body, BenchError> {
+    fn body(&mut self, entry: u32, measure: Measure) -> Result<Body, BenchError> {
         let mut body = Body::default();
         let mut left = vec![(entry, ANY)];
         while let Some(node) = left.pop() {
@@ -85,9 +93,12 @@ impl<'a> Search<'a> {
             }
             let (at, flags) = node;
             let flow = self.code.flow(at).map_err(|text| self.error(at, &text))?;
-            let called = self.called(at, &flow)?;
+            let called = match flow.calls {
+                Some(function) => self.called(at, function)?,
+                None => Some(0),
+            };
             body.graph.add_node(node);
-            let own = self.measure.of_instruction(self.code, at);
+            let own = measure.of_instruction(self.code, at);
             body.weights.insert(node, own + called.unwrap_or(0));
             if called.is_none() {
                 continue;
@@ -97,17 +108,25 @@ impl<'a> Search<'a> {
                 None => (flags, flags),
             };
             if flow.returns && taken != 0 {
-                body.returns.insert(node);
+                body.returns.insert(node, measure.of_return());
             }
             let next = self.code.listing.after(at).filter(|_| flow.goes_on);
             let next = next.map(|next| {
-                let way = self.measure.of_going_on(self.code, at, next, &flow);
+                let way = measure.of_going_on(self.code, at, next, &flow);
                 (next, else_flags, way)
             });
-            let jumps = flow
-                .jumps
-                .iter()
-                .map(|&to| (to, taken, self.measure.of_jump(self.code, to)));
+            let is_tail_call = |to: &u32| *to != entry && self.code.image.is_function(*to);
+            let (tails, jumps): (Vec<u32>, Vec<u32>) =
+                flow.jumps.iter().partition(|to| is_tail_call(to));
+            for function in tails.into_iter().filter(|_| taken != 0) {
+                if let Some(back) = self.called(at, function)? {
+                    let known = body.returns.get(&node).copied();
+                    body.returns.insert(node, back.max(known.unwrap_or(0)));
+                }
+            }
+            let jumps = jumps
+                .into_iter()
+                .map(|to| (to, taken, measure.of_jump(self.code, to)));
             for (to, flags, way) in jumps.chain(next).filter(|&(_, flags, _)| flags != 0) {
                 let successor = (to, if flow.keeps_flags { flags } else { ANY });
                 let known = body.graph.edge_weight(node, successor);
@@ -119,11 +138,8 @@ impl<'a> Search<'a> {
         Ok(body)
     }
 
-    /// The longest path of what an instruction calls: of no instructions if it calls nothing.
-    fn called(&mut self, at: u32, flow: &Flow) -> Result<Longest, BenchError> {
-        let Some(function) = flow.calls else {
-            return Ok(Some(0));
-        };
+    /// The longest path of a function that an instruction calls, or jumps to for good.
+    fn called(&mut self, at: u32, function: u32) -> Result<Longest, BenchError> {
         let name = self.code.image.name_around(function);
         if self.without.iter().any(|part| name.contains(part)) {
             return Ok(None);
@@ -139,8 +155,7 @@ impl<'a> Search<'a> {
             }
             _ => None,
         };
-        let longest = self.longest((function, length))?;
-        Ok(longest.map(|longest| longest + self.measure.of_jump(self.code, function)))
+        self.longest((function, length))
     }
 
     /// The longest path through a function: components in the order from returns to the entry.
@@ -148,8 +163,7 @@ impl<'a> Search<'a> {
         let mut behind = BTreeMap::new();
         for component in kosaraju_scc(&body.graph) {
             let members: BTreeSet<Node> = component.into_iter().collect();
-            let back = self.measure.of_return();
-            let ends = |node: Node| body.end(node, &members, &behind, back);
+            let ends = |node: Node| body.end(node, &members, &behind);
             if !members.iter().any(|&node| ends(node).is_some()) {
                 continue;
             }
@@ -248,18 +262,16 @@ impl<'a> Search<'a> {
 }
 
 impl Body {
-    /// The longest path that leaves a component behind one of its nodes, that node not counted, and
-    /// with this way back to the caller.
+    /// The longest path that leaves a component behind one of its nodes, that node not counted.
     fn end(
         &self,
         node: Node,
         members: &BTreeSet<Node>,
         behind: &BTreeMap<Node, u32>,
-        back: u32,
     ) -> Longest {
         let ways = self.graph.edges(node);
         let outside = ways.filter(|(_, to, _)| !members.contains(to));
-        let returned = self.returns.contains(&node).then_some(back);
+        let returned = self.returns.get(&node).copied();
         let behind = outside.filter_map(|(_, to, way)| Some(behind.get(&to)? + way));
         behind.chain(returned).max()
     }

@@ -293,23 +293,38 @@ a:\tbx\tlr
 #[test]
 fn cycles_on_a_cortex_m4_count_waits_for_each_line() {
     let halves: [u16; 7] = [0xb510, 0x6808, 0xfbb0, 0xf0f1, 0xd000, 0xbf00, 0xbd10];
-    let text = "\
-0:\tpush\t{r4, lr}
-2:\tldr\tr0, [r1, #0]
-4:\tudiv\tr0, r0, r1
-8:\tbeq.n\tc <f+0xc>
-a:\tnop
-c:\tpop\t{r4, pc}
-";
-    let code = halves.iter().flat_map(|half| half.to_le_bytes()).collect();
-    let image = Image::of_functions(Isa::Thumb, &[("f", 0..14)], (0, code));
-    let longest = program(&image, text).longest("f").expect("paths");
+    let code: Vec<u8> = halves.iter().flat_map(|half| half.to_le_bytes()).collect();
+    let cycles = |start: u32| {
+        let at = |offset: u32| format!("{:x}", start + offset);
+        let text = format!(
+            "\
+{}:\tpush\t{{r4, lr}}
+{}:\tldr\tr0, [r1, #0]
+{}:\tudiv\tr0, r0, r1
+{}:\tbeq.n\t{} <f+0xc>
+{}:\tnop
+{}:\tpop\t{{r4, pc}}
+",
+            at(0),
+            at(2),
+            at(4),
+            at(8),
+            at(12),
+            at(10),
+            at(12)
+        );
+        let functions = [("f", start..start + 14)];
+        let image = Image::of_functions(Isa::Thumb, &functions, (start, code.clone()));
+        let longest = program(&image, &text).longest("f").expect("paths");
+        longest.cycles
+    };
     let entry = 3 + 4 * 2;
     let [push, load, divide, branch, pop] = [3, 6, 12 + 4, 1, 3];
     let jump = 3 + 4 * 2;
     let back = 3 + 4 * 3;
     let expected = entry + push + load + divide + branch + jump + pop + back;
-    assert_eq!(longest.cycles, expected);
+    // Wherever the function begins, each place in a line is tried.
+    assert_eq!([0, 2, 4, 6].map(cycles), [expected; 4]);
 }
 
 #[test]
