@@ -499,7 +499,9 @@ fn generate_wanted(
         ast.name.text.clone_from(name);
     }
     let (spec, origins) = check(&ast)?;
-    Ok((generate(&spec, &origins)?, warnings(&spec, &origins)))
+    let generated = generate(&spec, &origins)?;
+    let warnings = warnings(&spec, &origins, &generated.interface.times);
+    Ok((generated, warnings))
 }
 
 impl Source {

@@ -83,7 +83,9 @@ fn generate_input(
     files: &mut Vec<String>,
 ) -> Result<(Generated, Vec<Diagnostic>), Diagnostics> {
     let (spec, origins) = Part::Parsing.timed(|| check(&input.load(root, files)?))?;
-    Ok((generate(&spec, &origins)?, warnings(&spec, &origins)))
+    let generated = generate(&spec, &origins)?;
+    let warnings = warnings(&spec, &origins, &generated.interface.times);
+    Ok((generated, warnings))
 }
 
 fn surface(input: &MacroInput) -> Surface {

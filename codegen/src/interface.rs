@@ -1,6 +1,8 @@
 //! The emitters' input besides the verified graph: names, documentation and constants, without
 //! types of the specification.
 
+use crate::timing::StepTime;
+
 /// A value shown to the user as an associated constant of the emitted type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PublicValue {
@@ -101,6 +103,8 @@ pub struct Interface {
     pub spec_toml: String,
     /// Greatest torque over speed, mechanical rad/s and Nm.
     pub envelope: Vec<[f64; 2]>,
+    /// Time of a step, by chip.
+    pub times: Vec<StepTime>,
     /// The controller's options, defaults included.
     pub options: Vec<OptionEntry>,
     /// Every format.

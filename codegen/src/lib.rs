@@ -39,6 +39,7 @@ pub mod pipeline;
 pub mod scaling;
 pub mod spec;
 pub mod stopwatch;
+pub mod timing;
 
 pub use builder::{BuildError, Builder, Written};
 pub use derive::derive_state;

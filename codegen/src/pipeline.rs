@@ -16,6 +16,7 @@ use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
 use crate::spec::{Origins, Spec};
 use crate::stopwatch::Part;
+use crate::timing::StepTime;
 
 /// Input of the emitters.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,8 +96,8 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     errors.into_result(Generated { graph, interface })
 }
 
-/// Warnings about a drive that is generated nevertheless.
-pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
+/// Warnings about a drive that is generated nevertheless, with its step's time on its target.
+pub fn warnings(spec: &Spec, origins: &Origins, times: &[StepTime]) -> Vec<Diagnostic> {
     let mut warnings = origins.warnings().to_vec();
     if law(&spec.controller).loses_current() {
         warnings.push(catalogue::printed_table(origins.at("controller.table")));
@@ -116,7 +117,22 @@ pub fn warnings(spec: &Spec, origins: &Origins) -> Vec<Diagnostic> {
     warnings.extend(warn_of_bus(spec, origins));
     warnings.extend(warn_of_watch(spec, origins));
     warnings.extend(warn_of_trip(spec, origins));
+    warnings.extend(times.iter().filter_map(|time| warn_of_time(time, origins)));
     warnings
+}
+
+/// Warns of a step that may take longer than the control period on the core that is named.
+fn warn_of_time(time: &StepTime, origins: &Origins) -> Option<Diagnostic> {
+    const TARGET: &str = "controller.target";
+    time.is_too_long().then(|| {
+        catalogue::step_exceeds_period(
+            origins.at(TARGET),
+            &origins.given(TARGET, ""),
+            (time.chip.name, time.times.control_cycles),
+            [time.clock, time.period],
+            time.errors.map(|errors| errors.control_cycles),
+        )
+    })
 }
 
 /// Warns of a rating beyond the drive's envelope.
@@ -469,7 +485,7 @@ kind = "pdcc"
             let mut ast = parse_toml(motor, "motor.toml").expect("the motor parses");
             apply_variant(&mut ast, variant).expect("the variant parses");
             let (spec, origins) = check(&ast).expect("it passes the checks");
-            let warnings = super::warnings(&spec, &origins);
+            let warnings = super::warnings(&spec, &origins, &[]);
             let of_emf = warnings
                 .iter()
                 .filter(|warning| warning.code == Code::EstimateTurnsTooFar);

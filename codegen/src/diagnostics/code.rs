@@ -173,6 +173,8 @@ codes! {
     SwingAboveTrip = 611,
     /// The residual watch allows for more than faults cause.
     WatchIsBlind = 613,
+    /// A step may take longer than the control period.
+    StepExceedsPeriod = 614,
     /// An internal error of the generator.
     Internal = 901,
 }

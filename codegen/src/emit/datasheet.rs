@@ -1,6 +1,7 @@
 //! The data sheet of one controller, in Markdown, from the interface and the verified graph alone:
 //! it cannot differ from the code.
 
+use super::times;
 use crate::diagnostics::{engineering, rpm, significant};
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
@@ -23,6 +24,8 @@ pub fn emit_datasheet(graph: &VerifiedGraph, interface: &Interface) -> String {
     constants_of_the_step(&mut sheet, program);
     memory(&mut sheet, program);
     operations(&mut sheet, program);
+    sheet.heading(2, "Time of a step");
+    sheet.lines(&times::table(interface.times.iter()));
     ranges(&mut sheet, program);
     decisions(&mut sheet, program);
     sheet.heading(2, "Specification");

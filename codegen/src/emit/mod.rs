@@ -15,6 +15,7 @@ mod rows;
 pub mod rust;
 mod signal;
 mod texts;
+mod times;
 
 pub use names::module_name;
 

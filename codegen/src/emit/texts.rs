@@ -5,7 +5,7 @@ use super::signal::Shape;
 use crate::interface::Interface;
 use crate::ir::{Op, PathCost, Program};
 
-/// Documentation of the type: interface, generator and scale, operations of a step, error bounds.
+/// Documentation of the type: interface, generator and scale, operations of a step.
 pub(super) fn of_type(program: &Program, interface: &Interface) -> Vec<String> {
     let cost = PathCost::of_function(&program.step);
     let mut lines = interface.doc.clone();

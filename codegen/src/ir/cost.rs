@@ -15,6 +15,8 @@ pub struct Cost {
     pub additions: u32,
     /// Multiplications, rounding and shift included.
     pub multiplications: u32,
+    /// Those of them whose product is a word.
+    pub narrow: u32,
     /// Comparisons, minima, maxima, selections and logic; a clamp counts two.
     pub comparisons: u32,
     /// Table look-ups.
@@ -65,9 +67,11 @@ impl Cost {
             | Op::FlagWord(_)
             | Op::AngleAdd(..)
             | Op::AngleSub(..) => cost.additions = 1,
-            Op::Product(..)
-            | Op::MulRound { .. }
-            | Op::MulRoundNarrow { .. }
+            Op::Product(..) | Op::MulRoundNarrow { .. } => {
+                cost.multiplications = 1;
+                cost.narrow = 1;
+            }
+            Op::MulRound { .. }
             | Op::MulFloor { .. }
             | Op::MulLimited { .. }
             | Op::AngleIndex { .. }
@@ -99,6 +103,7 @@ impl AddAssign for Cost {
     fn add_assign(&mut self, other: Self) {
         self.additions += other.additions;
         self.multiplications += other.multiplications;
+        self.narrow += other.narrow;
         self.comparisons += other.comparisons;
         self.lookups += other.lookups;
         self.divisions += other.divisions;

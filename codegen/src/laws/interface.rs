@@ -16,6 +16,7 @@ use crate::scaling::Scaled;
 use crate::spec::{
     self, CurrentSensing, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
 };
+use crate::timing;
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -33,6 +34,7 @@ pub fn interface(
         header: header(design, scaled),
         spec_toml: spec.to_toml(),
         envelope: envelope(spec),
+        times: timing::of_step(spec, scaled.graph.program()),
         options: options(spec, origins),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),

@@ -43,9 +43,9 @@ pub use ast::{Board, BoardFile, SpecAst};
 pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
 pub use controller::{
-    Candidates, CommonMode, ControllerSpec, Discretisation, EmfSource, FcsMpcSpec, KINDS, Kind,
-    LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates, PhccSpec,
-    PiPwmSpec, Reference, SpeedLoop, SwitchingTable,
+    Candidates, CommonMode, ControllerSpec, Core, Discretisation, EmfSource, FcsMpcSpec, KINDS,
+    Kind, LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates,
+    PhccSpec, PiPwmSpec, Reference, SpeedLoop, SwitchingTable, Target,
 };
 pub use harmonics::{Harmonics, ORDERS};
 pub use load::{load_motor_file, motor_text};

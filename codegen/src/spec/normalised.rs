@@ -228,7 +228,7 @@ impl Text {
 #[cfg(test)]
 mod tests {
     use crate::spec::{
-        BusCurrents, BusSource, CommonMode, ControllerSpec, CurrentSensing, CurrentSensor,
+        BusCurrents, BusSource, CommonMode, ControllerSpec, Core, CurrentSensing, CurrentSensor,
         Discretisation, EmfShape, EmfSource, HALL_ANGLES, InverterSpec, LimitRule, LoopOptions,
         Modulation, MotorSpec, PdccSpec, Reference, RotorSensing, SensedPhases, SensingTimes, Spec,
     };
@@ -299,6 +299,7 @@ mod tests {
                     delay: 1,
                     discretisation: Discretisation::Exact,
                     word: 32,
+                    core: Core::default(),
                     word_by_target: false,
                     commutation_threshold: 0.5,
                     commutation_timeout: 8,

@@ -1,5 +1,6 @@
 //! Cost of steps on a Cortex-M4: counted by `cargo xtask cost`, kept in a file beside the target.
 
+use hexagen_codegen::timing::Times;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -47,6 +48,18 @@ pub struct Longest {
 }
 
 impl Figures {
+    /// Those that the generator tells of a step, if its longest paths are known.
+    pub fn times(&self) -> Option<Times<u32>> {
+        let longest = self.longest?;
+        Some(Times {
+            normal: self.normal,
+            control: longest.instructions_in_control,
+            control_cycles: longest.cycles_in_control,
+            any: longest.instructions,
+            any_cycles: longest.cycles,
+        })
+    }
+
     /// Estimated cycles of the worst step: its instructions times the cycles per instruction of the
     /// normal path.
     pub fn worst_cycles(&self) -> u32 {

@@ -31,6 +31,7 @@ pub mod stability;
 pub mod standalone;
 mod tables;
 pub mod text;
+pub mod times;
 pub mod verification;
 
 pub use error::LabError;

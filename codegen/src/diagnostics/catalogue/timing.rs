@@ -2,8 +2,8 @@
 
 use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, at_least, at_most, engineering, frequency, rpm, rpm_at_least, rpm_at_most,
-    significant,
+    Code, Diagnostic, Location, at_least, at_most, engineering, frequency, percent, rpm,
+    rpm_at_least, rpm_at_most, significant,
 };
 
 /// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest
@@ -32,6 +32,31 @@ pub fn period_too_long(
             ),
         ),
         &[resistance, inductance],
+    )
+}
+
+/// A step in control may take longer than the period. `given` is the core as written; `clock` in
+/// hertz, `period` in seconds; `error` of an estimate, as a part.
+pub fn step_exceeds_period(
+    at: &Location,
+    given: &str,
+    (chip, cycles): (&str, u32),
+    [clock, period]: [f64; 2],
+    error: Option<f64>,
+) -> Diagnostic {
+    let told = match error {
+        Some(error) => format!("estimated within {}", percent(error)),
+        None => "counted".to_owned(),
+    };
+    Diagnostic::new(
+        Code::StepExceedsPeriod,
+        at,
+        format!(
+            "`target`: {given}: a step in control takes up to {cycles} cycles on an {chip} ({told}), and the control period of {} has {} at {}; state `core_clock` if your core is faster, lower `f_pwm`, or choose a controller with a shorter step",
+            engineering(period, "s"),
+            (clock * period).floor(),
+            engineering(clock, "Hz"),
+        ),
     )
 }
 

@@ -19,7 +19,7 @@ mod text_tokens;
 pub use format::{format_rust, readable_rust, rustfmt};
 
 use super::rows::WholeCommand;
-use super::texts;
+use super::{texts, times};
 use crate::at_once::at_once;
 use crate::interface::Interface;
 use crate::ir::{Program, Setter, VerifiedGraph};
@@ -95,9 +95,15 @@ pub fn write_rust(graph: &VerifiedGraph, interface: &Interface, type_name: &str)
     let constants = constants(program, whole.as_ref(), &names);
     let body = quote!(#public #constants #code);
     let imports = imports(&item_names(&body), type_name);
+    let mut doc = texts::of_type(program, interface);
+    let times = times::documentation(&interface.times);
+    if !times.is_empty() {
+        doc.push(String::new());
+        doc.extend(times);
+    }
     RustText {
         type_name: type_name.to_owned(),
-        docs: docs(&texts::of_type(program, interface)),
+        docs: docs(&doc),
         imports,
         body,
     }

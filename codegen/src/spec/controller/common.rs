@@ -1,5 +1,6 @@
 //! Options that all controllers share, and how they are read.
 
+use super::core::{Core, Target};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
 use crate::spec::options::{Row, number, word};
@@ -68,15 +69,6 @@ words! {
     }
 }
 
-words! {
-    /// Core for which the word length is chosen.
-    pub enum Target {
-        "portable" = Portable: "any core",
-        "cortex_m4" = CortexM4: "one instruction for the upper half of a 32-bit product, as on RV32IM",
-        "cortex_m0" = CortexM0: "no such instruction: words of 16 bits where they suffice; the type's documentation states the loss of accuracy",
-    }
-}
-
 /// A speed loop around the current loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedLoop {
@@ -105,6 +97,8 @@ pub struct LoopOptions {
     pub discretisation: Discretisation,
     /// Word length of the control arithmetic, 16 or 32 bits.
     pub word: u32,
+    /// The core that runs it.
+    pub core: Core,
     /// Whether the target chose words of 16 bits; 32 bits replace them where they do not suffice.
     pub word_by_target: bool,
     /// Outgoing current below which a commutation ends, ampere.
@@ -209,7 +203,13 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<Target>("target", "cortex_m0")
             .preset("portable")
-            .about("Core for which the word length is chosen"),
+            .about("Core for which the word length is chosen and the time of a step is told"),
+        |_| None,
+    ),
+    Row::of(
+        rule::quantity("core_clock", &[D::Frequency], 1e6, 1e9, "72 MHz")
+            .off("the chip's greatest is taken: 170 MHz for `cortex_m4`, 48 MHz for `cortex_m0`, 150 MHz for `riscv32`")
+            .about("Clock of the core, for the share of the control period that a step takes; only with a `target`"),
         |_| None,
     ),
     Row::of(
@@ -412,7 +412,8 @@ pub(crate) fn read_common(
     let emf_filter = read_filter(reader, emf, errors);
     let delay = reader.integer_or_preset(errors, "delay");
     let discretisation = reader.choice_or_preset(errors, "discretisation", &[]);
-    let (word, word_by_target) = read_word_length(reader, errors);
+    let core = Core::read(reader, errors);
+    let (word, word_by_target) = core.word_length(reader, errors);
     let commutation_threshold = read_threshold(reader, surroundings, errors);
     let commutation_timeout = read_timeout(reader, surroundings, errors);
     let speed = read_speed_loop(reader, surroundings, errors);
@@ -441,6 +442,7 @@ pub(crate) fn read_common(
         delay,
         discretisation,
         word,
+        core,
         word_by_target,
         commutation_threshold: commutation_threshold?,
         commutation_timeout: commutation_timeout?,
@@ -671,16 +673,6 @@ pub(crate) fn refuse_commutation(reader: &Reader, setting: [&str; 2], errors: &m
     for name in ["commutation_threshold", "commutation_timeout"] {
         refuse(reader, name, setting, why, errors);
     }
-}
-
-/// Word length, and whether the target chose it. A core without long products gets 16 bits.
-fn read_word_length(reader: &Reader, errors: &mut Collector) -> (u32, bool) {
-    let target: Target = reader.choice_or_preset(errors, "target", &[]);
-    let preferred = (target == Target::CortexM0).then_some(16);
-    if reader.field("word").is_none() {
-        return (preferred.unwrap_or(32), preferred.is_some());
-    }
-    (reader.integer(errors, "word").unwrap_or(32), false)
 }
 
 /// 0.5 A by default; a quarter of the rated current where that is less, an ADC count where that is more.

@@ -4,6 +4,7 @@
 //! [`KINDS`].
 
 pub(crate) mod common;
+mod core;
 pub(crate) mod fcs_mpc;
 mod off_leg;
 pub(crate) mod p_pwm;
@@ -14,6 +15,7 @@ pub(crate) mod pi_pwm;
 pub use common::{
     CommonMode, Discretisation, EmfSource, LimitRule, LoopOptions, Reference, SpeedLoop,
 };
+pub use core::{Core, Target};
 pub use fcs_mpc::{Candidates, FcsMpcSpec};
 pub use off_leg::OffLegModel;
 pub use p_pwm::PPwmSpec;

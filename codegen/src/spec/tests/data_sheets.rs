@@ -354,7 +354,7 @@ fn a_flat_motor_as_its_catalogue_words_it() {
     let text = EC_45.replace(" block_mean", "");
     let ast = parse_toml(&newcomer(&text, 24, 8), "ec45.toml").expect("is TOML");
     let (spec, origins) = check(&ast).expect("passes");
-    let codes: Vec<Code> = warnings(&spec, &origins)
+    let codes: Vec<Code> = warnings(&spec, &origins, &[])
         .iter()
         .map(|warning| warning.code)
         .collect();
@@ -492,7 +492,7 @@ fn a_rating_a_little_beyond_the_bus_is_a_warning_with_what_the_bus_allows() {
     let text = newcomer(&EC_45.replacen("4750 rpm", "5300 rpm", 1), 24, 8);
     let ast = parse_toml(&text, "ec45.toml").expect("is read");
     let (spec, origins) = check(&ast).expect("is accepted");
-    let told = warnings(&spec, &origins);
+    let told = warnings(&spec, &origins, &[]);
     let told: Vec<String> = told.iter().map(ToString::to_string).collect();
     let [told] = told.as_slice() else {
         panic!("{told:?}");

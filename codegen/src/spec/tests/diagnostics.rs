@@ -161,8 +161,8 @@ pub(super) fn found_in_file(text: &str) -> Vec<Diagnostic> {
 fn found(ast: Result<SpecAst, Diagnostics>) -> Vec<Diagnostic> {
     let warnings = ast.and_then(|ast| {
         let (spec, origins) = check(&ast)?;
-        generate(&spec, &origins)?;
-        Ok(warnings(&spec, &origins))
+        let generated = generate(&spec, &origins)?;
+        Ok(warnings(&spec, &origins, &generated.interface.times))
     });
     warnings.unwrap_or_else(|errors| errors.into_iter().collect())
 }

@@ -175,7 +175,7 @@ fn the_trip_level_follows_from_the_largest_set_point() {
             (counts - counts.round()).abs() < 1e-6,
             "{inverter}: {counts}"
         );
-        let told: Vec<Code> = warnings(&spec, &origins)
+        let told: Vec<Code> = warnings(&spec, &origins, &[])
             .iter()
             .map(|warning| warning.code)
             .collect();

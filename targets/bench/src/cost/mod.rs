@@ -1,6 +1,7 @@
 //! Cost of a step: instructions, cycles, code, tables, state and stack, of every drive and of its
 //! peers.
 
+mod calibration;
 mod count;
 mod cycles;
 pub mod elf;
@@ -15,6 +16,7 @@ use crate::listing::Listed;
 use crate::pil::Emulated;
 use crate::targets::Target;
 use crate::vectors::drive_of;
+use calibration::{Calibration, Drive};
 use comfy_table::{CellAlignment, Table, presets};
 use count::{Counts, Inputs, count, supervision};
 use elf::{Code, Image, Isa};
@@ -90,9 +92,28 @@ struct Row {
     /// Bytes of tables; `None` for peers, whose tables have no names.
     tables: Option<usize>,
     state: Option<usize>,
+    /// Only for drives in Rust.
+    calibration: Option<Calibration>,
+}
+
+/// What is run on a step function.
+struct Run {
+    inputs: Inputs,
+    /// As in [`Row`].
+    tables: Option<usize>,
+    /// Of drives.
+    calibration: Option<Calibration>,
 }
 
 impl Row {
+    fn calibrated(&self) -> Option<Drive> {
+        Some(Drive {
+            symbol: self.symbol.clone(),
+            calibration: self.calibration?,
+            times: self.figures().times()?,
+        })
+    }
+
     fn figures(&self) -> Figures {
         Figures {
             normal: self.counts.normal,
@@ -112,14 +133,24 @@ impl Row {
 /// If a tool is missing, or a figure rose.
 pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     let mut rises = vec![];
+    let mut calibrated = vec![];
     for &target in targets {
         let firmware = Firmware::build(target)?;
         let rows = rows(&firmware, options)?;
         let compiler = firmware.toolchain.version();
-        let (name, chip) = (target.name(), chip(target).name);
+        let release = calibration::release(compiler);
+        let (name, chip) = (target.name(), chip(target));
         let table = table(target, &rows);
-        println!("{name}, {compiler}; most cycles: {chip}\n{table}");
+        println!(
+            "{name}, {compiler}; most cycles: {} at {} MHz, {}\n{table}",
+            chip.name, chip.clock, chip.assumed
+        );
         let figures = figures(&rows);
+        let drives: Vec<Drive> = rows.iter().filter_map(Row::calibrated).collect();
+        if options.only.is_none() && !options.accept {
+            rises.extend(calibration::rises(target, &release, &drives));
+        }
+        calibrated.push((target, release, drives));
         if options.accept {
             let compiler = compiler.to_owned();
             let mut steps = figures;
@@ -144,6 +175,9 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
             );
         }
     }
+    if options.accept && options.only.is_none() && targets.len() == Target::ALL.len() {
+        calibration::write(&calibrated)?;
+    }
     println!("{LEGEND}");
     if rises.is_empty() {
         return Ok(());
@@ -158,7 +192,11 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     let mut rows = vec![];
     let of_drive = |listed: &Listed| {
         let drive = drive_of(listed)?;
-        Ok((Inputs::record(&drive)?, Some(tables(&drive))))
+        Ok(Run {
+            inputs: Inputs::record(&drive)?,
+            tables: Some(tables(&drive)),
+            calibration: Some(Calibration::of(&drive)),
+        })
     };
     for program in PROGRAMS {
         rows.extend(rows_of(firmware, program, options, of_drive)?);
@@ -180,6 +218,7 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
             code: image.code(INTERRUPT)?,
             tables: None,
             state: None,
+            calibration: None,
         });
     }
 
@@ -187,7 +226,11 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
     let of_peer = |listed: &Listed| {
         let run = peers::run(&paper, &listed.symbol)?;
         run.compare(&Emulated(firmware, PEERS), listed)?;
-        Ok((run.inputs, None))
+        Ok(Run {
+            inputs: run.inputs,
+            tables: None,
+            calibration: None,
+        })
     };
     rows.extend(rows_of(firmware, PEERS, options, of_peer)?);
     Ok(rows)
@@ -229,7 +272,7 @@ fn rows_of(
     firmware: &Firmware,
     program: &str,
     options: &Options,
-    inputs_of: impl Fn(&Listed) -> Result<(Inputs, Option<usize>), BenchError> + Sync,
+    run_of: impl Fn(&Listed) -> Result<Run, BenchError> + Sync,
 ) -> Result<Vec<Row>, BenchError> {
     let elf = firmware.elf(program);
     let image = Image::read(&elf, isa(firmware.target))?;
@@ -238,12 +281,13 @@ fn rows_of(
     let mut steps = firmware.drives(program)?;
     steps.retain(|step| options.wants(&step.symbol));
     let row_of = |listed: &Listed| {
-        let (inputs, tables) = inputs_of(listed)?;
+        let run = run_of(listed)?;
+        let is_in_rust = IN_RUST.contains(&program);
         let symbol = listed.symbol.as_str();
         let step = (listed.place, symbol);
-        let mut counts = count(firmware, program, &image, step, &inputs, paths.as_ref())?;
-        if IN_RUST.contains(&program) {
-            counts.supervision = Some(supervision(firmware, program, listed.place, &inputs)?);
+        let mut counts = count(firmware, program, &image, step, &run.inputs, paths.as_ref())?;
+        if is_in_rust {
+            counts.supervision = Some(supervision(firmware, program, listed.place, &run.inputs)?);
         }
         let longest = paths.as_ref().map(|paths| paths.longest(symbol));
         let longest = longest.transpose()?;
@@ -255,8 +299,9 @@ fn rows_of(
             counts,
             longest,
             code: image.code(symbol)?,
-            tables,
+            tables: run.tables,
             state: Some(listed.size),
+            calibration: run.calibration.filter(|_| is_in_rust),
         })
     };
     steps.par_iter().map(row_of).collect()

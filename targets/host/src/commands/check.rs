@@ -11,6 +11,7 @@ use hexagen_codegen::spec::{CurrentSensing, Reference, RotorSensing, Spec};
 use hexagen_lab::closed_loop::{Held, Trip};
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::text::significant;
+use hexagen_lab::times::{Time, sentence};
 use serde::Serialize;
 
 /// Options of `check`.
@@ -91,6 +92,8 @@ pub struct Checked {
     pub chosen: Vec<Chosen>,
     /// Runs, slow and at rated speed.
     pub points: Vec<Point>,
+    /// Time of a step, by chip.
+    pub step: Vec<Time>,
     /// Warnings of the generator.
     pub warnings: Vec<String>,
 }
@@ -154,6 +157,13 @@ impl Checked {
             return_current_limit_a: inverter.bus_currents.returned,
             chosen: chosen(drive),
             points,
+            step: drive
+                .generated
+                .interface
+                .times
+                .iter()
+                .map(Time::from)
+                .collect(),
             warnings: drive.warnings.clone(),
         };
         let (works, verdict) = checked.judge();
@@ -272,6 +282,8 @@ impl Checked {
             ),
         ];
         lines.extend(self.limits_of_bus());
+        let times = &drive.generated.interface.times;
+        lines.push(format!("step        {}", sentence(times)));
         let mut heading = "by rule";
         for Chosen {
             option,
@@ -283,11 +295,6 @@ impl Checked {
             heading = "";
         }
         lines.extend(self.points.iter().map(|point| self.line(point)));
-        lines.push(format!(
-            "stable      with R and L as far off as their tolerances, {:.0} % and {:.0} %",
-            100.0 * motor.resistance_tolerance,
-            100.0 * motor.inductance_tolerance,
-        ));
         lines.push(format!("next        {next}"));
         lines.iter().map(|line| shortened(line)).collect()
     }

@@ -399,7 +399,7 @@ pub fn data() -> Results {
         },
         own: Some(Own {
             variant: 0,
-            operations: 153,
+            times: vec![],
         }),
         links: links(&paper_motor(), &variants[0].generated.as_ref().expect("is shown").rust),
         variants,

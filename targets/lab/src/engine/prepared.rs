@@ -78,7 +78,7 @@ pub fn prepare_ast(
     }
     let (spec, origins) = check(&ast)?;
     let generated = generate(&spec, &origins)?;
-    let warnings = warnings(&spec, &origins);
+    let warnings = warnings(&spec, &origins, &generated.interface.times);
     let formats = formats(&generated.interface.formats);
     let models = models(&generated.interface.spec_toml, &formats);
     let (reference, bit_true, ideal) = models.map_err(|error| {

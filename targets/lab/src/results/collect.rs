@@ -143,7 +143,7 @@ impl Plan {
             variants,
             own: (!self.is_expected).then(|| Own {
                 variant: 0,
-                operations: own.operations(),
+                times: own.generated.interface.times.clone(),
             }),
             links: Vec::new(),
             errors: Vec::new(),

@@ -12,6 +12,7 @@ use crate::robustness::Robustness;
 use crate::stability::Stability;
 use hexagen_codegen::interface::FormatEntry;
 use hexagen_codegen::spec::{InverterSpec, MotorSpec};
+use hexagen_codegen::timing::StepTime;
 
 /// Contents of one page.
 #[derive(Clone, Debug)]
@@ -60,12 +61,12 @@ pub struct Results {
 }
 
 /// The motor file's own controller, of which the verdict is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Own {
     /// Place among the variants.
     pub variant: usize,
-    /// Operations of a step, at worst.
-    pub operations: u32,
+    /// Time of a step, by chip.
+    pub times: Vec<StepTime>,
 }
 
 /// Result of the bit-for-bit check of emitted against bit-true code.

@@ -15,8 +15,12 @@ use crate::targets::Target;
 /// A chip, with its core's times in cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chip {
-    /// Name and clock.
+    /// Name.
     pub name: &'static str,
+    /// Clock, MHz.
+    pub clock: u32,
+    /// What the figures assume.
+    pub assumed: &'static str,
     /// A division.
     division: u32,
     /// What a jump, a call or a return takes beyond one cycle.
@@ -48,7 +52,9 @@ pub fn chip(target: Target) -> Chip {
         // RM0440, "Read access latency", four wait states above 136 MHz in range 1 boost; category
         // 2 devices read 64 bits.
         Target::CortexM4 => Chip {
-            name: "STM32G431 at 170 MHz, code in flash",
+            name: "STM32G431",
+            clock: 170,
+            assumed: "code in flash",
             division: 12,
             refill: 3,
             not_taken: 0,
@@ -61,7 +67,9 @@ pub fn chip(target: Target) -> Chip {
         // 4 + n. No division. Flash: RM0360, FLASH_ACR, one wait state above 24 MHz; "Flash memory
         // organization", cells of 32 bits.
         Target::CortexM0 => Chip {
-            name: "STM32F030 at 48 MHz, multiplier of one cycle, code in flash",
+            name: "STM32F030",
+            clock: 48,
+            assumed: "multiplier of one cycle, code in flash",
             division: 0,
             refill: 3,
             not_taken: 0,
@@ -74,7 +82,9 @@ pub fn chip(target: Target) -> Chip {
         // 32-bit instruction across a word. SRAM has no wait states; the code's bank and those of
         // data and stack are used by nothing else.
         Target::Riscv32 => Chip {
-            name: "RP2350 (Hazard3), code in a bank of SRAM of its own",
+            name: "RP2350",
+            clock: 150,
+            assumed: "core Hazard3, code in a bank of SRAM of its own",
             division: 19,
             refill: 2,
             not_taken: 2,

@@ -263,12 +263,7 @@ impl<'a> Search<'a> {
 
 impl Body {
     /// The longest path that leaves a component behind one of its nodes, that node not counted.
-    fn end(
-        &self,
-        node: Node,
-        members: &BTreeSet<Node>,
-        behind: &BTreeMap<Node, u32>,
-    ) -> Longest {
+    fn end(&self, node: Node, members: &BTreeSet<Node>, behind: &BTreeMap<Node, u32>) -> Longest {
         let ways = self.graph.edges(node);
         let outside = ways.filter(|(_, to, _)| !members.contains(to));
         let returned = self.returns.get(&node).copied();

@@ -25,7 +25,10 @@ const SIZE: (f64, f64) = (550.0, 280.0);
 
 /// The plots; nothing if the controller has no record.
 pub fn blocks(data: &Results) -> Vec<Block> {
-    let own = data.own.and_then(|own| data.variants.get(own.variant));
+    let own = data
+        .own
+        .as_ref()
+        .and_then(|own| data.variants.get(own.variant));
     let Some(record) = own.and_then(|own| own.records.last()) else {
         return Vec::new();
     };
@@ -91,7 +94,7 @@ fn currents(data: &Results, record: &Record) -> Plot {
 fn torque(data: &Results, record: &Record) -> Plot {
     let scale = TorqueScale::of(data.torque);
     let demand = scale.per_nm * data.torque;
-    let own = data.own.map(|own| own.variant);
+    let own = data.own.as_ref().map(|own| own.variant);
     let of = |record: &Record| {
         columns_between(&record.trace, &WINDOW, COLUMNS, |k| {
             scale.per_nm * record.trace.torque[k]

@@ -5,11 +5,12 @@ use crate::closed_loop::{LimitOutcome, SpeedLimit};
 use crate::report::{Block, Cell, Column, Table};
 use crate::results::{Results, Run, Variant};
 use crate::text::{grouped, number, quantity, ripple};
+use crate::times::sentence;
 use std::f64::consts::TAU;
 
 /// The verdict, and what it rests on: name and text of each line.
 pub fn verdict(data: &Results) -> Option<(String, Vec<(&'static str, String)>)> {
-    let own = data.own?;
+    let own = data.own.as_ref()?;
     let variant = data.variants.get(own.variant)?;
     let run = variant.runs.first()?;
     let rows = vec![
@@ -18,14 +19,7 @@ pub fn verdict(data: &Results) -> Option<(String, Vec<(&'static str, String)>)> 
         ("torque", torque(data, variant, run)),
         ("ripple", ripples(run)),
         ("losses", losses(data, variant)),
-        (
-            "step",
-            format!(
-                "at most {} operations every {}",
-                own.operations,
-                quantity(data.inverter.t_s, "s")
-            ),
-        ),
+        ("step", sentence(&own.times)),
         ("verified", verified(data)),
         ("best", best(data, own.variant)),
     ];

@@ -1,0 +1,62 @@
+//! The core that runs a controller.
+
+use crate::diagnostics::Collector;
+use crate::spec::reader::Reader;
+use crate::spec::words::words;
+
+words! {
+    /// A kind of core.
+    pub enum Target {
+        "portable" = Portable: "any core",
+        "cortex_m4" = CortexM4: "one instruction for the upper half of a 32-bit product",
+        "riscv32" = Riscv32: "the same on RV32IM",
+        "cortex_m0" = CortexM0: "no such instruction: words of 16 bits where they suffice; the type's documentation states the loss of accuracy",
+    }
+}
+
+/// The core that runs a controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Core {
+    /// Its kind.
+    pub target: Target,
+    /// Its clock, hertz; none: that of the chip whose cycles were counted. Only of a named core.
+    pub clock: Option<f64>,
+}
+
+impl Default for Core {
+    fn default() -> Self {
+        Self {
+            target: Target::Portable,
+            clock: None,
+        }
+    }
+}
+
+impl Core {
+    /// Reads `target` and `core_clock`.
+    pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Self {
+        let target = reader.choice_or_preset(errors, "target", &[]);
+        let core = Self {
+            target,
+            clock: (reader.plain_quantity(errors, "core_clock")).map(|clock| clock.si),
+        };
+        if !core.is_named() {
+            reader.refuse_without(errors, "target: cortex_m4", &["core_clock"]);
+        }
+        core
+    }
+
+    /// Whether the specification names it.
+    pub fn is_named(self) -> bool {
+        self.target != Target::Portable
+    }
+
+    /// Word length in bits, and whether the core chose it: 16 bits without long products.
+    pub(super) fn word_length(self, reader: &Reader, errors: &mut Collector) -> (u32, bool) {
+        let preferred = (self.target == Target::CortexM0).then_some(16);
+        if reader.field("word").is_none() {
+            return (preferred.unwrap_or(32), preferred.is_some());
+        }
+        (reader.integer(errors, "word").unwrap_or(32), false)
+    }
+}

@@ -1,0 +1,239 @@
+//! Time of a step on named chips: counted for the drives of the firmware, estimated from the
+//! operations of the step for all others.
+//!
+//! `figures.rs` is written by `cargo xtask cost --accept`, which counts the firmware's drives and
+//! fits the estimates to them.
+
+mod figures;
+
+use crate::ir::{Cost, PathCost, Program};
+use crate::spec::{Spec, Target};
+use figures::CHIPS;
+use fnv::FnvHasher;
+use std::hash::Hasher;
+
+/// Figures of a step. Any step: start-up, calibration and trips included; in control: without
+/// them. Cycles are those of the chip, with the wait states of its memory and without credit for
+/// prefetch and caches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Times<T> {
+    /// Instructions of most steps in control.
+    pub normal: T,
+    /// Instructions of the longest path in control.
+    pub control: T,
+    /// Cycles of a step in control at most.
+    pub control_cycles: T,
+    /// Instructions of the longest path of any step.
+    pub any: T,
+    /// Cycles of any step at most.
+    pub any_cycles: T,
+}
+
+/// A chip with its figures.
+#[derive(Debug, PartialEq)]
+pub struct Chip {
+    /// The core, as an option of the controller.
+    pub target: Target,
+    /// The core's name.
+    pub core: &'static str,
+    /// The chip's name.
+    pub name: &'static str,
+    /// Clock of the core, hertz.
+    pub clock: f64,
+    /// The compiler whose code was counted.
+    pub compiler: &'static str,
+    estimates: Times<Estimate>,
+    /// Figures of drives by [`digest`].
+    counted: &'static [(u64, Times<u32>)],
+}
+
+/// How a figure follows from the operations of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Weights of [`Work`].
+    pub weights: Work,
+    /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
+    /// drive's figure.
+    pub error: f64,
+}
+
+impl Estimate {
+    const fn of(weights: Work, error: f64) -> Self {
+        Self { weights, error }
+    }
+}
+
+/// What an estimate weighs: one step, state words, additions with comparisons, products of more
+/// than 32 bits, other products, look-ups, divisions.
+pub type Work = [f64; 7];
+
+/// Time of a controller's step on a chip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepTime {
+    /// The chip.
+    pub chip: &'static Chip,
+    /// Clock of the core, hertz: `core_clock`, or that of the chip.
+    pub clock: f64,
+    /// Control period, seconds.
+    pub period: f64,
+    /// Whether the specification names the core.
+    pub is_named: bool,
+    /// Figures.
+    pub times: Times<u32>,
+    /// Largest errors of the estimates; `None` for a drive that was counted.
+    pub errors: Option<Times<f64>>,
+}
+
+impl<T> Times<T> {
+    /// All figures.
+    pub fn into_array(self) -> [T; 5] {
+        [
+            self.normal,
+            self.control,
+            self.control_cycles,
+            self.any,
+            self.any_cycles,
+        ]
+    }
+
+    /// These figures, each with that of others.
+    pub fn zip<U>(self, others: Times<U>) -> Times<(T, U)> {
+        Times {
+            normal: (self.normal, others.normal),
+            control: (self.control, others.control),
+            control_cycles: (self.control_cycles, others.control_cycles),
+            any: (self.any, others.any),
+            any_cycles: (self.any_cycles, others.any_cycles),
+        }
+    }
+
+    /// The same of other figures.
+    pub fn map<U>(self, of: impl FnMut(T) -> U) -> Times<U> {
+        let [normal, control, control_cycles, any, any_cycles] = self.into_array().map(of);
+        Times {
+            normal,
+            control,
+            control_cycles,
+            any,
+            any_cycles,
+        }
+    }
+}
+
+impl<T: Copy> Times<T> {
+    /// These figures, in the order of the fields.
+    pub const fn of([normal, control, control_cycles, any, any_cycles]: [T; 5]) -> Self {
+        Self {
+            normal,
+            control,
+            control_cycles,
+            any,
+            any_cycles,
+        }
+    }
+}
+
+impl StepTime {
+    /// Cycles of a control period.
+    pub fn cycles_of_period(&self) -> f64 {
+        self.clock * self.period
+    }
+
+    /// Whether a step may take longer than the control period on the core that is named.
+    pub fn is_too_long(&self) -> bool {
+        self.is_named && self.share() > 1.0
+    }
+
+    /// The figures, estimates with two digits.
+    pub fn told(&self) -> Times<u32> {
+        self.times.map(|figure| {
+            let step = 10_u32.pow(figure.max(1).ilog10().saturating_sub(1));
+            match self.errors {
+                Some(_) => (figure + step / 2) / step * step,
+                None => figure,
+            }
+        })
+    }
+
+    /// Part of the control period that a step in control takes at most.
+    pub fn share(&self) -> f64 {
+        f64::from(self.times.control_cycles) / self.cycles_of_period()
+    }
+}
+
+/// Times of a controller's step: on the chip of its target, on every chip if it has none.
+pub fn of_step(spec: &Spec, program: &Program) -> Vec<StepTime> {
+    let core = spec.controller.common().core;
+    let digest = digest(spec);
+    let work = work(program);
+    let chips = CHIPS
+        .iter()
+        .filter(|chip| !core.is_named() || core.target == chip.target);
+    chips
+        .map(|chip| {
+            let counted = chip.counted(digest);
+            StepTime {
+                chip,
+                clock: core.clock.unwrap_or(chip.clock),
+                period: spec.inverter.t_s,
+                is_named: core.is_named(),
+                times: counted.unwrap_or_else(|| chip.estimated(&work)),
+                errors: counted
+                    .is_none()
+                    .then(|| chip.estimates.map(|estimate| estimate.error)),
+            }
+        })
+        .collect()
+}
+
+/// Counted times of a drive on a core by the [`digest`] of its specification, and the compiler.
+pub fn counted(target: Target, digest: u64) -> Option<(&'static str, Times<u32>)> {
+    let chip = CHIPS.iter().find(|chip| chip.target == target)?;
+    Some((chip.compiler, chip.counted(digest)?))
+}
+
+impl Chip {
+    fn counted(&self, digest: u64) -> Option<Times<u32>> {
+        let counted = self.counted.iter().find(|(of, _)| *of == digest);
+        counted.map(|(_, times)| *times)
+    }
+
+    fn estimated(&self, work: &Times<Work>) -> Times<u32> {
+        self.estimates.zip(*work).map(|(estimate, work)| {
+            let parts = estimate.weights.iter().zip(work);
+            parts
+                .map(|(weight, count)| weight * count)
+                .sum::<f64>()
+                .round() as u32
+        })
+    }
+}
+
+/// What each figure is estimated from.
+pub fn work(program: &Program) -> Times<Work> {
+    let cost = PathCost::of_function(&program.step);
+    let of = |cost: Cost| {
+        [
+            1.0,
+            program.states.len() as f64,
+            f64::from(cost.additions + cost.comparisons),
+            f64::from(cost.multiplications - cost.narrow),
+            f64::from(cost.narrow),
+            f64::from(cost.lookups),
+            f64::from(cost.divisions),
+        ]
+    };
+    let (normal, worst) = (of(cost.normal), of(cost.worst));
+    Times::of([normal, worst, worst, worst, worst])
+}
+
+/// Digest of a specification, whatever its name: FNV-1a of its normal form, which has no core.
+pub fn digest(spec: &Spec) -> u64 {
+    let mut digest = FnvHasher::default();
+    let nameless = Spec {
+        name: String::new(),
+        ..spec.clone()
+    };
+    digest.write(nameless.to_toml().as_bytes());
+    digest.finish()
+}

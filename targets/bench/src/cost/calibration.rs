@@ -1,0 +1,271 @@
+//! Calibration of the generator's step times: figures of the counted drives, and weights of
+//! operations that estimate those of others. The weights make the sum of relative errors least.
+
+use super::longest::chip;
+use crate::BenchError;
+use crate::firmware::workspace;
+use crate::targets::Target;
+use hexagen_codegen::timing::{Times, Work, counted, digest, work};
+use hexagen_lab::engine::Prepared;
+use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
+use std::fmt::Write as _;
+use std::fs;
+use std::process::Command;
+
+/// What a drive's times are known by, and estimated from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calibration {
+    digest: u64,
+    work: Times<Work>,
+}
+
+/// A counted drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    pub symbol: String,
+    pub calibration: Calibration,
+    pub times: Times<u32>,
+}
+
+/// The drives of a target, and the compiler that made their code.
+pub type Counted = (Target, String, Vec<Drive>);
+
+/// Weights, and the largest relative error of a drive by the weights fitted to all others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fit {
+    weights: Work,
+    error: f64,
+}
+
+impl Calibration {
+    pub fn of(drive: &Prepared) -> Self {
+        Self {
+            digest: digest(&drive.spec),
+            work: work(drive.generated.graph.program()),
+        }
+    }
+}
+
+/// Name and version of a compiler, without what is behind them.
+pub fn release(compiler: &str) -> String {
+    let words: Vec<&str> = compiler.split(' ').take(2).collect();
+    words.join(" ")
+}
+
+/// Drives whose counted times exceed those that the generator tells. Those of another compiler are
+/// not compared.
+pub fn rises(target: Target, compiler: &str, drives: &[Drive]) -> Vec<String> {
+    let mut rises = vec![];
+    for drive in drives {
+        let Some((of, known)) = counted(core(target), drive.calibration.digest) else {
+            rises.push(format!(
+                "{}: {}: the generator does not know its times",
+                target.name(),
+                drive.symbol
+            ));
+            continue;
+        };
+        let pairs = known.zip(drive.times).into_array();
+        if of == compiler && pairs.iter().any(|(known, found)| found > known) {
+            rises.push(format!(
+                "{}: {}: times {:?}, and the generator tells {known:?}",
+                target.name(),
+                drive.symbol,
+                drive.times
+            ));
+        }
+    }
+    rises
+}
+
+/// Writes the generator's figures.
+///
+/// # Errors
+/// If a fit fails, the file cannot be written, or rustfmt does not run.
+pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
+    let mut text = "//! Written by `cargo xtask cost --accept`.\n\n\
+        use super::{Chip, Estimate, Times};\nuse crate::spec::Target;\n\n"
+        .to_owned();
+    let mut chips = String::new();
+    for (target, compiler, drives) in targets {
+        let chip = chip(*target);
+        let fits = fits(drives)?;
+        let estimates = times(fits.map(|fit| {
+            let weights = fit.weights.map(number).join(", ");
+            let error = number(fit.error);
+            format!("Estimate::of([{weights}], {error})")
+        }));
+        let mut counted: Vec<(u64, String)> = drives
+            .iter()
+            .map(|drive| {
+                let figures = drive.times.map(|figure| figure.to_string());
+                (drive.calibration.digest, times(figures))
+            })
+            .collect();
+        counted.sort_unstable();
+        counted.dedup_by_key(|(digest, _)| *digest);
+        let counted = counted
+            .into_iter()
+            .fold(String::new(), |mut all, (digest, times)| {
+                let groups =
+                    [48, 32, 16, 0].map(|shift| format!("{:04x}", digest >> shift & 0xffff));
+                let _ = write!(all, "(0x{}, {times}),", groups.join("_"));
+                all
+            });
+        let _ = write!(
+            chips,
+            "Chip {{ target: Target::{:?}, core: {:?}, name: {:?}, clock: {}e6, compiler: {compiler:?}, \
+             estimates: {estimates}, counted: &[{counted}] }},",
+            core(*target),
+            name(*target),
+            chip.name,
+            chip.clock,
+        );
+    }
+    let _ = write!(
+        text,
+        "pub static CHIPS: [Chip; {}] = [{chips}];",
+        targets.len()
+    );
+    let path = workspace().join("codegen/src/timing/figures.rs");
+    let new = path.with_extension("new");
+    fs::write(&new, text)?;
+    let formatted = Command::new("rustfmt")
+        .args(["--edition", "2024"])
+        .arg(&new)
+        .status()?;
+    if !formatted.success() {
+        return Err(BenchError::Failed("rustfmt failed".to_owned()));
+    }
+    fs::rename(new, path)?;
+    Ok(())
+}
+
+/// The target as an option of a controller.
+fn core(target: Target) -> hexagen_codegen::spec::Target {
+    match target {
+        Target::CortexM4 => hexagen_codegen::spec::Target::CortexM4,
+        Target::CortexM0 => hexagen_codegen::spec::Target::CortexM0,
+        Target::Riscv32 => hexagen_codegen::spec::Target::Riscv32,
+    }
+}
+
+fn name(target: Target) -> &'static str {
+    match target {
+        Target::CortexM4 => "Cortex-M4",
+        Target::CortexM0 => "Cortex-M0",
+        Target::Riscv32 => "RV32IMC",
+    }
+}
+
+/// Rust text of figures.
+fn times(figures: Times<String>) -> String {
+    format!("Times::of([{}])", figures.into_array().join(", "))
+}
+
+/// A number with four digits.
+fn number(number: f64) -> String {
+    let digits = if number >= 1.0 {
+        3 - (number.log10().floor() as i32).min(3)
+    } else {
+        4
+    };
+    format!("{number:.*}", digits.max(1) as usize)
+}
+
+/// The fit of each figure.
+fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
+    let points = drives.iter().map(|drive| {
+        let times = drive.times.map(f64::from);
+        drive.calibration.work.zip(times).into_array()
+    });
+    let points: Vec<[(Work, f64); 5]> = points.collect();
+    let mut fits = vec![];
+    for figure in 0..5 {
+        let points: Vec<(Work, f64)> = points.iter().map(|point| point[figure]).collect();
+        fits.push(fit(&points)?);
+    }
+    let fits: [Fit; 5] = fits
+        .try_into()
+        .map_err(|_| BenchError::Failed("a figure has no fit".to_owned()))?;
+    Ok(Times::of(fits))
+}
+
+fn fit(points: &[(Work, f64)]) -> Result<Fit, BenchError> {
+    let mut error = 0.0_f64;
+    for (left_out, (work, time)) in points.iter().enumerate() {
+        let mut others = points.to_vec();
+        others.remove(left_out);
+        let estimate = dot(&weights(&others)?, work);
+        error = error.max((estimate / time - 1.0).abs());
+    }
+    Ok(Fit {
+        weights: weights(points)?,
+        error,
+    })
+}
+
+/// Weights of 0 or more whose estimates have the least sum of relative errors: a linear program with
+/// an error above each point's deviation to both sides.
+fn weights(points: &[(Work, f64)]) -> Result<Work, BenchError> {
+    let mut program = Problem::new(OptimizationDirection::Minimize);
+    let weights = Work::default().map(|_| program.add_var(0.0, (0.0, f64::INFINITY)));
+    for (work, time) in points {
+        let error = program.add_var(1.0, (0.0, f64::INFINITY));
+        for (sign, bound) in [(1.0, ComparisonOp::Ge), (-1.0, ComparisonOp::Le)] {
+            let parts = weights
+                .iter()
+                .zip(work)
+                .map(|(weight, work)| (*weight, work / time));
+            let both: Vec<_> = parts.chain([(error, sign)]).collect();
+            program.add_constraint(both, bound, 1.0);
+        }
+    }
+    match program.solve() {
+        Ok(SolveOutcome::Solution(solution)) => {
+            Ok(weights.map(|weight| solution.var_value(weight)))
+        }
+        other => Err(BenchError::Failed(format!("fit of step times: {other:?}"))),
+    }
+}
+
+fn dot(weights: &Work, work: &Work) -> f64 {
+    weights
+        .iter()
+        .zip(work)
+        .map(|(weight, work)| weight * work)
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_of_operations_is_found_and_an_outlier_is_told() {
+        let point = |add: f64, product: f64| [1.0, 0.0, add, product, 0.0, 0.0, 0.0];
+        let exact = |work: Work| (work, 20.0 + 1.5 * work[2] + 4.0 * work[3]);
+        let mut points: Vec<(Work, f64)> = (1..9)
+            .map(|k| exact(point(f64::from(10 * k), f64::from(k * k % 7))))
+            .collect();
+        let found = fit(&points).expect("a fit");
+        for (weight, expected) in [(0, 20.0), (2, 1.5), (3, 4.0)] {
+            assert!((found.weights[weight] - expected).abs() < 1e-6);
+        }
+        assert!(found.error < 1e-6);
+        // A drive that takes a quarter more changes no weight, and is the largest error.
+        let (work, time) = exact(point(35.0, 3.0));
+        points.push((work, 1.25 * time));
+        let found = fit(&points).expect("a fit");
+        assert!((found.weights[2] - 1.5).abs() < 1e-6);
+        assert!((found.error - 0.2).abs() < 1e-6, "{}", found.error);
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        assert_eq!(
+            [0.123_45, 1.234_56, 123.456, 7654.3].map(number),
+            ["0.1235", "1.235", "123.5", "7654.3"]
+        );
+    }
+}
