@@ -5,11 +5,11 @@ use crate::bus::Bus;
 use crate::set_point::debug;
 use crate::trip::Trip;
 use crate::{
-    Checked, Command, Control, Fault, Legs, Observation, Rest, Sample, SetPoint, State, Status,
-    Supervisor,
+    Checked, Command, Control, Fault, LegState, Legs, Observation, Rest, Sample, SetPoint, State,
+    Status, Supervisor,
 };
 use core::fmt;
-use core::ops::{ControlFlow, Deref};
+use core::ops::Deref;
 
 /// A drive with the controller `C`, emitted by `hexagen::controller!`.
 ///
@@ -225,10 +225,13 @@ impl<C: Control> ControlLoop<'_, C> {
         };
         let checked = match core.supervisor.check(limits, sensors, seen, is_demanded) {
             Some(checked) => C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen)),
-            None => match rest(set_point, core, *sample) {
-                ControlFlow::Continue(checked) => checked,
-                ControlFlow::Break(command) => return command,
-            },
+            None => {
+                let unfit = rest(set_point, core, *sample);
+                match unfit.rest {
+                    Rest::Control | Rest::Against(_) => unfit.checked,
+                    Rest::Legs(state) => return at_rest(set_point, core, &unfit, state),
+                }
+            }
         };
         let rotor = C::track(&mut core.law, &checked);
         let (law, words) = (&mut core.law, &set_point.words);
@@ -314,24 +317,26 @@ impl<C: Control> ControlLoop<'_, C> {
         )
     }
 
-    /// Publishes the status for the set-point's half.
     fn publish(&self) {
-        let bits = self.core.supervisor.status_bits();
-        self.set_point.status.store(bits.into());
+        publish(self.set_point, self.core);
     }
 }
 
-/// A period without control, in start-up, with a fault or off on purpose; or one that brakes a fast
-/// rotor or bridges a disturbed Hall code, which continues in control. Only these change the status,
-/// so it is published here. The sample is passed by value, so that it uses memory on this path only.
+/// A period that passes no check.
+struct Unfit {
+    sample: Sample,
+    checked: Checked,
+    rest: Rest,
+    was_tripped: bool,
+}
+
+/// What the supervisor makes of a period that passes no check: start-up, a fault or off on purpose,
+/// or control after all, of a fast rotor that is braked and of a disturbed Hall code that is bridged.
+/// The sample is passed by value, so that it uses memory on this path only.
 #[cold]
 #[inline(never)]
-fn rest<C: Control>(
-    set_point: &SetPoint<C>,
-    core: &mut Core<C>,
-    sample: Sample,
-) -> ControlFlow<C::Command, Checked> {
-    let was_tripped = core.supervisor.fault();
+fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> Unfit {
+    let was_tripped = core.supervisor.fault().is_some();
     let resolved;
     let seen = match C::ANGLE {
         None => &sample,
@@ -342,22 +347,45 @@ fn rest<C: Control>(
     };
     let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, seen);
     let checked = C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen));
-    if let (None, Some(fault)) = (was_tripped, core.supervisor.fault()) {
-        keep(set_point, core, sample, fault);
-    }
-    set_point.status.store(core.supervisor.status_bits().into());
     match rest {
-        Rest::Control => ControlFlow::Continue(checked),
+        // A trip is kept before it is published.
+        Rest::Legs(_) => {}
+        Rest::Control => publish(set_point, core),
         Rest::Against(direction) => {
+            publish(set_point, core);
             set_point.oppose(direction);
-            ControlFlow::Continue(checked)
-        }
-        Rest::Legs(state) => {
-            let rotor = C::track(&mut core.law, &checked);
-            C::rest(&mut core.law, &checked, rotor);
-            ControlFlow::Break(C::Command::at_rest(state))
         }
     }
+    Unfit {
+        sample,
+        checked,
+        rest,
+        was_tripped,
+    }
+}
+
+/// A period with all legs in one state. It is apart from [`rest`], so that no way leads from here to
+/// control.
+#[cold]
+#[inline(never)]
+fn at_rest<C: Control>(
+    set_point: &SetPoint<C>,
+    core: &mut Core<C>,
+    unfit: &Unfit,
+    state: LegState,
+) -> C::Command {
+    if let (false, Some(fault)) = (unfit.was_tripped, core.supervisor.fault()) {
+        keep(set_point, core, unfit.sample, fault);
+    }
+    publish(set_point, core);
+    let rotor = C::track(&mut core.law, &unfit.checked);
+    C::rest(&mut core.law, &unfit.checked, rotor);
+    C::Command::at_rest(state)
+}
+
+/// Publishes the status for the set-point's half. A step that passes all checks does not change it.
+fn publish<C: Control>(set_point: &SetPoint<C>, core: &Core<C>) {
+    set_point.status.store(core.supervisor.status_bits().into());
 }
 
 /// Trips a drive, unless it is tripped already, for what its sample does not show.

@@ -439,7 +439,7 @@ impl Drive {
 }
 
 /// Options without an axis, with the tests that cover them.
-const TRIED_ELSEWHERE: [(&str, &str); 4] = [
+const TRIED_ELSEWHERE: [(&str, &str); 5] = [
     (
         "commutation_threshold",
         "constants of a drive: the motors of the library differ in it by default",
@@ -451,6 +451,10 @@ const TRIED_ELSEWHERE: [(&str, &str); 4] = [
     (
         "speed_bandwidth",
         "a coefficient of the speed loop: the motors of the library differ in it by default",
+    ),
+    (
+        "core_clock",
+        "changes no code (`timing/mod.rs` tests what it tells)",
     ),
     (
         "target",

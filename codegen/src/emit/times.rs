@@ -3,9 +3,6 @@
 use crate::diagnostics::{engineering, percent};
 use crate::timing::StepTime;
 
-/// What the cycles include.
-const CYCLES: &str = "Cycles include every wait state of the chip's memory, without credit for prefetch or caches. Any step: start-up, calibration and trips included.";
-
 /// What the documentation of a type in Rust says: times that were counted, and those on the core
 /// that is named.
 pub(super) fn documentation(times: &[StepTime]) -> Vec<String> {
@@ -20,35 +17,28 @@ pub(super) fn documentation(times: &[StepTime]) -> Vec<String> {
     lines
 }
 
-/// A Markdown table of times, with a heading sentence; nothing if there are none.
+/// A Markdown table of times behind a sentence; nothing if there are none.
 pub(super) fn table<'a>(times: impl Iterator<Item = &'a StepTime>) -> Vec<String> {
-    let (counted, estimated): (Vec<&StepTime>, _) = times.partition(|time| time.errors.is_none());
-    let mut lines = vec![];
-    if let Some(first) = counted.first() {
-        let compiler = first.chip.compiler;
-        lines.push(format!(
-            "Time of a step, counted in the code of {compiler}. {CYCLES}"
-        ));
-        lines.extend(rows(&counted));
-    }
-    if !estimated.is_empty() {
-        lines.push(format!(
-            "Time of a step, estimated from its operations. {CYCLES} In brackets the largest error of a counted drive that the estimate was not fitted to."
-        ));
-        lines.extend(rows(&estimated));
-    }
-    lines
-}
-
-fn rows(times: &[&StepTime]) -> Vec<String> {
-    let head =
-        "| chip | most steps | in control at most | of the control period | any step at most |";
+    let times: Vec<&StepTime> = times.collect();
+    let Some(first) = times.first() else {
+        return vec![];
+    };
+    let estimated = if times.iter().any(|time| time.errors.is_some()) {
+        " Figures with an error in brackets are estimated from the operations of the step: it is the largest of the counted drives that the estimate was not fitted to."
+    } else {
+        ""
+    };
     let mut lines = vec![
+        format!(
+            "Time of a step in the code of {}. Cycles include every wait state of the chip's memory, without credit for prefetch or caches; any step includes start-up, calibration and trips.{estimated}",
+            first.chip.compiler
+        ),
         String::new(),
-        head.to_owned(),
+        "| chip | most steps | in control at most | of the control period | any step at most |"
+            .to_owned(),
         "|---|---|---|---|---|".to_owned(),
     ];
-    lines.extend(times.iter().map(|time| row(time)));
+    lines.extend(times.into_iter().map(row));
     lines
 }
 

@@ -10,6 +10,7 @@ use crate::ir::{Cost, PathCost, Program};
 use crate::spec::{Spec, Target};
 use figures::CHIPS;
 use fnv::FnvHasher;
+use std::fmt;
 use std::hash::Hasher;
 
 /// Figures of a step. Any step: start-up, calibration and trips included; in control: without
@@ -30,7 +31,7 @@ pub struct Times<T> {
 }
 
 /// A chip with its figures.
-#[derive(Debug, PartialEq)]
+#[derive(PartialEq)]
 pub struct Chip {
     /// The core, as an option of the controller.
     pub target: Target,
@@ -192,6 +193,12 @@ pub fn counted(target: Target, digest: u64) -> Option<(&'static str, Times<u32>)
     Some((chip.compiler, chip.counted(digest)?))
 }
 
+impl fmt::Debug for Chip {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
 impl Chip {
     fn counted(&self, digest: u64) -> Option<Times<u32>> {
         let counted = self.counted.iter().find(|(of, _)| *of == digest);
@@ -236,4 +243,91 @@ pub fn digest(spec: &Spec) -> u64 {
     };
     digest.write(nameless.to_toml().as_bytes());
     digest.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ir::{Interval, Output, ProgramBuilder, named};
+    use crate::spec::{apply_variant, check, parse_toml};
+
+    const WEIGHTS: Work = [100.0, 10.0, 2.0, 7.0, 3.0, 5.0, 50.0];
+
+    static COUNTED: [(u64, Times<u32>); 1] = [(17, Times::of([1, 2, 3, 4, 5]))];
+
+    const CHIP: Chip = Chip {
+        target: Target::CortexM0,
+        core: "Core",
+        name: "Chip",
+        clock: 48e6,
+        compiler: "rustc",
+        estimates: Times::of([Estimate::of(WEIGHTS, 0.1); 5]),
+        counted: &COUNTED,
+    };
+
+    /// A step with a rare division.
+    fn program() -> Program {
+        let b = ProgramBuilder::new("Times", &[]);
+        b.stage("read", &[]);
+        let word = Interval::symmetric(1000);
+        let (x, y) = (b.input("x", word, ""), b.input("y", word, ""));
+        named! {
+            let sum = x + y;
+            let large = sum.is_above(0);
+        }
+        b.guarded_stage("shrink", large, true, &[]);
+        named! {
+            let product = y.mul_round(x, 4);
+        }
+        let [result] = b.join([("result", product, sum)]);
+        b.output(Output::Probe("result"), result);
+        b.finish()
+    }
+
+    #[test]
+    fn an_estimate_weighs_the_operations_of_its_path() {
+        let times = CHIP.estimated(&work(&program()));
+        let normal = 100 + 2 * 2;
+        assert_eq!(times.normal, normal);
+        assert_eq!([times.control, times.any_cycles], [normal + 7; 2]);
+    }
+
+    #[test]
+    fn a_counted_drive_is_known_by_its_digest_alone() {
+        assert_eq!(CHIP.counted(17).map(|times| times.any), Some(4));
+        assert_eq!(CHIP.counted(18), None);
+    }
+
+    #[test]
+    fn estimates_are_told_with_two_digits() {
+        let time = |errors| StepTime {
+            chip: &CHIP,
+            clock: 48e6,
+            period: 50e-6,
+            is_named: true,
+            times: Times::of([7, 96, 1234, 2345, 2449]),
+            errors,
+        };
+        assert_eq!(
+            time(Some(Times::of([0.1; 5]))).told().into_array(),
+            [7, 96, 1200, 2300, 2400]
+        );
+        assert_eq!(time(None).told().control_cycles, 1234);
+        assert!((time(None).share() - 1234.0 / 2400.0).abs() < 1e-12);
+        assert!(!time(None).is_too_long());
+    }
+
+    /// The name and the core change nothing of what a drive computes.
+    #[test]
+    fn the_digest_ignores_name_and_core() {
+        let of = |text: &str, variant: &str| {
+            let mut ast = parse_toml(text, "motor.toml").expect("it parses");
+            apply_variant(&mut ast, variant).expect("a variant");
+            digest(&check(&ast).expect("it passes the checks").0)
+        };
+        let text = include_str!("../example.toml");
+        let known = of(text, "pdcc");
+        assert_eq!(of(text, "pdcc:target=cortex_m4,core_clock=72 MHz"), known);
+        assert_ne!(of(text, "pdcc:delay=0"), known);
+    }
 }

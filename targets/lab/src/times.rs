@@ -51,20 +51,51 @@ impl From<&StepTime> for Time {
 
 /// One line: cycles on the first chip, and shares of the control period on all.
 pub fn sentence(times: &[StepTime]) -> String {
-    let Some(first) = times.first() else {
+    let Some((first, others)) = times.split_first() else {
         return "not known".to_owned();
     };
-    let about = if first.errors.is_some() { "about " } else { "" };
-    let cycles = first.told().control_cycles;
-    let shares = times.iter().enumerate().map(|(k, time)| {
-        let period = if k == 0 { " of the period" } else { "" };
-        format!(
-            "{} %{period} on {} at {}",
-            significant(100.0 * time.share(), 2),
-            time.chip.name,
-            engineering(time.clock, "Hz")
-        )
+    let share = |time: &StepTime| format!("{} %", significant(100.0 * time.share(), 2));
+    let others: String = others.iter().fold(String::new(), |mut text, time| {
+        let before = if text.is_empty() { "; " } else { ", " };
+        text += &format!("{before}{} {}", time.chip.name, share(time));
+        text
     });
-    let shares: Vec<String> = shares.collect();
-    format!("at most {about}{cycles} cycles: {}", shares.join(", "))
+    format!(
+        "{} {} cycles, {} of the period ({}, {}){others}",
+        if first.errors.is_some() {
+            "about"
+        } else {
+            "at most"
+        },
+        first.told().control_cycles,
+        share(first),
+        first.chip.name,
+        engineering(first.clock, "Hz"),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Time, sentence};
+    use crate::engine::{MotorSource, prepare};
+
+    #[test]
+    fn a_counted_drive_is_told_as_at_most_and_another_as_about() {
+        let motor = MotorSource::of_library("trivedi-keshri-660w").expect("a motor");
+        let told = |variant: &str| {
+            let drive = prepare(&motor, Some(variant)).expect("a drive");
+            let times = drive.generated.interface.times;
+            let data: Vec<Time> = times.iter().map(Time::from).collect();
+            (sentence(&times), data)
+        };
+        let (counted, data) = told("pdcc");
+        assert!(counted.starts_with("at most "), "{counted}");
+        assert!(counted.contains(" % of the period (STM32G431, 170 MHz); STM32F030 "));
+        assert_eq!(data.len(), 3);
+        assert_eq!(data[0].error_pct, None);
+        let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
+        assert!(estimated.starts_with("about "), "{estimated}");
+        assert!(estimated.ends_with("(STM32F030, 64 MHz)"), "{estimated}");
+        assert!(data[0].error_pct.is_some_and(|error| error > 1.0));
+    }
 }

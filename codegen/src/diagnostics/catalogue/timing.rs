@@ -36,23 +36,32 @@ pub fn period_too_long(
 }
 
 /// A step in control may take longer than the period. `given` is the core as written; `clock` in
-/// hertz, `period` in seconds; `error` of an estimate, as a part.
+/// hertz, stated or the chip's, `period` in seconds; `error` of an estimate, as a part.
 pub fn step_exceeds_period(
     at: &Location,
     given: &str,
     (chip, cycles): (&str, u32),
-    [clock, period]: [f64; 2],
+    (clock, is_stated): (f64, bool),
+    period: f64,
     error: Option<f64>,
 ) -> Diagnostic {
     let told = match error {
-        Some(error) => format!("estimated within {}", percent(error)),
+        Some(error) => format!(
+            "estimated within {}",
+            percent((100.0 * error).ceil() / 100.0)
+        ),
         None => "counted".to_owned(),
+    };
+    let faster = if is_stated {
+        ""
+    } else {
+        "state `core_clock` if your core is faster, "
     };
     Diagnostic::new(
         Code::StepExceedsPeriod,
         at,
         format!(
-            "`target`: {given}: a step in control takes up to {cycles} cycles on an {chip} ({told}), and the control period of {} has {} at {}; state `core_clock` if your core is faster, lower `f_pwm`, or choose a controller with a shorter step",
+            "`target`: {given}: a step in control takes up to {cycles} cycles on an {chip} ({told}), and the control period of {} has {} at {}; {faster}lower `f_pwm`, or choose a controller with a shorter step",
             engineering(period, "s"),
             (clock * period).floor(),
             engineering(clock, "Hz"),
