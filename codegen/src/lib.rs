@@ -13,6 +13,7 @@
 //!   verify  ─> VerifiedGraph                                  (ir::verify: intervals, stages, words)
 //!                             ║ barrier 2: every error of design and scaling at once
 //!   bound   ─> distance of every value from the ideal one     (ir::bounds)
+//!   time    ─> instructions and cycles on named chips         (timing: counted or estimated)
 //!   emit    ─> Rust │ C99 │ data sheet │ IR text │ Gappa scripts   (emit: cannot fail)
 //! ```
 //!

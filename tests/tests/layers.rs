@@ -6,13 +6,14 @@ use std::fs;
 use std::path::Path;
 
 /// Modules of the generator, each with its allowed imports besides itself.
-const IMPORTS: [(&str, &[&str]); 16] = [
+const IMPORTS: [(&str, &[&str]); 17] = [
     ("at_once", &[]),
     ("derive", &[]),
     ("stopwatch", &[]),
     ("diagnostics", &[]),
-    ("interface", &[]),
+    ("interface", &["timing"]),
     ("ir", &[]),
+    ("timing", &["ir"]),
     ("spec", &["diagnostics"]),
     ("design", &["spec"]),
     (
@@ -34,6 +35,7 @@ const IMPORTS: [(&str, &[&str]); 16] = [
             "scaling",
             "spec",
             "stopwatch",
+            "timing",
         ],
     ),
     (
@@ -48,9 +50,13 @@ const IMPORTS: [(&str, &[&str]); 16] = [
             "scaling",
             "spec",
             "stopwatch",
+            "timing",
         ],
     ),
-    ("emit", &["at_once", "diagnostics", "interface", "ir"]),
+    (
+        "emit",
+        &["at_once", "diagnostics", "interface", "ir", "timing"],
+    ),
     ("builder", &["diagnostics", "emit", "pipeline", "spec"]),
     ("field_items", &["diagnostics", "spec"]),
     (

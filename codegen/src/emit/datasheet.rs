@@ -25,7 +25,7 @@ pub fn emit_datasheet(graph: &VerifiedGraph, interface: &Interface) -> String {
     memory(&mut sheet, program);
     operations(&mut sheet, program);
     sheet.heading(2, "Time of a step");
-    sheet.lines(&times::table(interface.times.iter()));
+    sheet.lines(&times::list(interface.times.iter()));
     ranges(&mut sheet, program);
     decisions(&mut sheet, program);
     sheet.heading(2, "Specification");

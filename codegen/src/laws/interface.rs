@@ -16,7 +16,7 @@ use crate::scaling::Scaled;
 use crate::spec::{
     self, CurrentSensing, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
 };
-use crate::timing;
+use crate::timing::{self, Asked};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -28,13 +28,21 @@ pub fn interface(
     accuracy: Vec<PublicConstant>,
 ) -> Interface {
     let inverter = &spec.inverter;
+    let core = spec.controller.common().core;
+    let spec_toml = spec.to_toml();
+    let asked = Asked {
+        spec_toml: &spec_toml,
+        target: core.name(),
+        clock: core.clock,
+        period: inverter.t_s,
+    };
     Interface {
+        times: timing::of_step(scaled.graph.program(), asked),
         type_name: spec.name.clone(),
         doc: documentation(spec, design, law),
         header: header(design, scaled),
-        spec_toml: spec.to_toml(),
+        spec_toml,
         envelope: envelope(spec),
-        times: timing::of_step(spec, scaled.graph.program()),
         options: options(spec, origins),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),

@@ -7,7 +7,6 @@
 mod figures;
 
 use crate::ir::{Cost, PathCost, Program};
-use crate::spec::{Spec, Target};
 use figures::CHIPS;
 use fnv::FnvHasher;
 use std::fmt;
@@ -33,8 +32,8 @@ pub struct Times<T> {
 /// A chip with its figures.
 #[derive(PartialEq)]
 pub struct Chip {
-    /// The core, as an option of the controller.
-    pub target: Target,
+    /// The core as a word of the option `target`.
+    pub target: &'static str,
     /// The core's name.
     pub core: &'static str,
     /// The chip's name.
@@ -162,22 +161,34 @@ impl StepTime {
     }
 }
 
-/// Times of a controller's step: on the chip of its target, on every chip if it has none.
-pub fn of_step(spec: &Spec, program: &Program) -> Vec<StepTime> {
-    let core = spec.controller.common().core;
-    let digest = digest(spec);
+/// What is asked of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Asked<'a> {
+    /// The normalised specification.
+    pub spec_toml: &'a str,
+    /// The core that is named, a word of the option `target`; `None`: all.
+    pub target: Option<&'static str>,
+    /// Its clock, hertz; `None`: that of the chip.
+    pub clock: Option<f64>,
+    /// Control period, seconds.
+    pub period: f64,
+}
+
+/// Times of a controller's step: on the chip of its core, on every chip if none is named.
+pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
+    let digest = digest(asked.spec_toml);
     let work = work(program);
     let chips = CHIPS
         .iter()
-        .filter(|chip| !core.is_named() || core.target == chip.target);
+        .filter(|chip| asked.target.is_none_or(|target| target == chip.target));
     chips
         .map(|chip| {
             let counted = chip.counted(digest);
             StepTime {
                 chip,
-                clock: core.clock.unwrap_or(chip.clock),
-                period: spec.inverter.t_s,
-                is_named: core.is_named(),
+                clock: asked.clock.unwrap_or(chip.clock),
+                period: asked.period,
+                is_named: asked.target.is_some(),
                 times: counted.unwrap_or_else(|| chip.estimated(&work)),
                 errors: counted
                     .is_none()
@@ -188,7 +199,7 @@ pub fn of_step(spec: &Spec, program: &Program) -> Vec<StepTime> {
 }
 
 /// Counted times of a drive on a core by the [`digest`] of its specification, and the compiler.
-pub fn counted(target: Target, digest: u64) -> Option<(&'static str, Times<u32>)> {
+pub fn counted(target: &str, digest: u64) -> Option<(&'static str, Times<u32>)> {
     let chip = CHIPS.iter().find(|chip| chip.target == target)?;
     Some((chip.compiler, chip.counted(digest)?))
 }
@@ -234,14 +245,12 @@ pub fn work(program: &Program) -> Times<Work> {
     Times::of([normal, worst, worst, worst, worst])
 }
 
-/// Digest of a specification, whatever its name: FNV-1a of its normal form, which has no core.
-pub fn digest(spec: &Spec) -> u64 {
+/// Digest of a normalised specification, FNV-1a, whatever the name in its first line. The core is
+/// not part of it.
+pub fn digest(spec_toml: &str) -> u64 {
     let mut digest = FnvHasher::default();
-    let nameless = Spec {
-        name: String::new(),
-        ..spec.clone()
-    };
-    digest.write(nameless.to_toml().as_bytes());
+    let (_name, rest) = spec_toml.split_once('\n').unwrap_or_default();
+    digest.write(rest.as_bytes());
     digest.finish()
 }
 
@@ -256,7 +265,7 @@ mod tests {
     static COUNTED: [(u64, Times<u32>); 1] = [(17, Times::of([1, 2, 3, 4, 5]))];
 
     const CHIP: Chip = Chip {
-        target: Target::CortexM0,
+        target: "cortex_m0",
         core: "Core",
         name: "Chip",
         clock: 48e6,
@@ -323,7 +332,7 @@ mod tests {
         let of = |text: &str, variant: &str| {
             let mut ast = parse_toml(text, "motor.toml").expect("it parses");
             apply_variant(&mut ast, variant).expect("a variant");
-            digest(&check(&ast).expect("it passes the checks").0)
+            digest(&check(&ast).expect("it passes the checks").0.to_toml())
         };
         let text = include_str!("../example.toml");
         let known = of(text, "pdcc");

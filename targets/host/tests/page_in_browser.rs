@@ -10,6 +10,9 @@ use browser_support::{Open, open};
 use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
     MouseMoved, MousePressed, MouseReleased,
 };
+use headless_chrome::protocol::cdp::Input::DispatchTouchEventTypeOption::{
+    TouchEnd, TouchMove, TouchStart,
+};
 use hexagen_host::render;
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Page, reproduction_page, results_page};
@@ -158,6 +161,31 @@ fn plots_of_one_axis_are_read_and_zoomed_together() {
         assert_eq!(scales() == whole, is_whole, "{key}");
         assert_eq!(scales().0, scales().1);
     }
+    page.assert_no_errors();
+}
+
+#[test]
+fn two_fingers_zoom_what_is_between_them() {
+    let Some(page) = open(&REPORT, 390, "light") else {
+        return;
+    };
+    let scales = || (page.ask("scaleOf(0)"), page.ask("scaleOf(1)"));
+    let whole = scales();
+    let at = |share: f64| page.point(0, share, 0.5);
+    page.touch(TouchStart, &[at(0.4)]);
+    page.touch(TouchMove, &[at(0.5)]);
+    assert_eq!(scales(), whole, "one finger scrolls");
+    page.touch(TouchStart, &[at(0.4), at(0.6)]);
+    page.touch(TouchMove, &[at(0.3), at(0.7)]);
+    page.touch(TouchEnd, &[]);
+    // Half of the axis of 60 degrees, around its middle.
+    assert_eq!(scales().0, Value::from(vec![15, 45]));
+    assert_eq!(scales().0, scales().1, "its mates follow");
+    // Back again, and no farther than the axis.
+    page.touch(TouchStart, &[at(0.2), at(0.8)]);
+    page.touch(TouchMove, &[at(0.45), at(0.55)]);
+    page.touch(TouchEnd, &[]);
+    assert_eq!(scales(), whole);
     page.assert_no_errors();
 }
 

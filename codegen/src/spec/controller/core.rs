@@ -2,7 +2,7 @@
 
 use crate::diagnostics::Collector;
 use crate::spec::reader::Reader;
-use crate::spec::words::words;
+use crate::spec::words::{Words as _, words};
 
 words! {
     /// A kind of core.
@@ -40,15 +40,15 @@ impl Core {
             target,
             clock: (reader.plain_quantity(errors, "core_clock")).map(|clock| clock.si),
         };
-        if !core.is_named() {
+        if core.name().is_none() {
             reader.refuse_without(errors, "target: cortex_m4", &["core_clock"]);
         }
         core
     }
 
-    /// Whether the specification names it.
-    pub fn is_named(self) -> bool {
-        self.target != Target::Portable
+    /// Its name as a word of `target`, if the specification names it.
+    pub fn name(self) -> Option<&'static str> {
+        (self.target != Target::Portable).then(|| self.target.word())
     }
 
     /// Word length in bits, and whether the core chose it: 16 bits without long products.

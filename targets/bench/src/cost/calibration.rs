@@ -40,7 +40,7 @@ struct Fit {
 impl Calibration {
     pub fn of(drive: &Prepared) -> Self {
         Self {
-            digest: digest(&drive.spec),
+            digest: digest(&drive.generated.interface.spec_toml),
             work: work(drive.generated.graph.program()),
         }
     }
@@ -84,7 +84,7 @@ pub fn rises(target: Target, compiler: &str, drives: &[Drive]) -> Vec<String> {
 /// If a fit fails, the file cannot be written, or rustfmt does not run.
 pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
     let mut text = "//! Written by `cargo xtask cost --accept`.\n\n\
-        use super::{Chip, Estimate, Times};\nuse crate::spec::Target;\n\n"
+        use super::{Chip, Estimate, Times};\n\n"
         .to_owned();
     let mut chips = String::new();
     for (target, compiler, drives) in targets {
@@ -114,7 +114,7 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
             });
         let _ = write!(
             chips,
-            "Chip {{ target: Target::{:?}, core: {:?}, name: {:?}, clock: {}e6, compiler: {compiler:?}, \
+            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, compiler: {compiler:?}, \
              estimates: {estimates}, counted: &[{counted}] }},",
             core(*target),
             name(*target),
@@ -141,12 +141,12 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
     Ok(())
 }
 
-/// The target as an option of a controller.
-fn core(target: Target) -> hexagen_codegen::spec::Target {
+/// The target as a word of the option of controllers.
+fn core(target: Target) -> &'static str {
     match target {
-        Target::CortexM4 => hexagen_codegen::spec::Target::CortexM4,
-        Target::CortexM0 => hexagen_codegen::spec::Target::CortexM0,
-        Target::Riscv32 => hexagen_codegen::spec::Target::Riscv32,
+        Target::CortexM4 => "cortex_m4",
+        Target::CortexM0 => "cortex_m0",
+        Target::Riscv32 => "riscv32",
     }
 }
 

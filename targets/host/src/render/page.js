@@ -478,6 +478,50 @@ function watchKeys(entry) {
   });
 }
 
+// Two fingers zoom a plot and its mates: the values below them stay below them. One finger scrolls
+// the page, a double tap shows all.
+function watchFingers(entry) {
+  const { plot, u } = entry;
+  const fingers = new Map();
+  let values = [];
+  const axes = plot.series.length > 0 ? ["x"] : ["x", "y"];
+  const places = (name) => [...fingers.values()].map((at) => at[name]);
+  const touched = (handle) => (event) => {
+    if (event.pointerType !== "touch") return;
+    const { left, top } = u.over.getBoundingClientRect();
+    handle(event.pointerId, { x: event.clientX - left, y: event.clientY - top });
+    if (fingers.size === 2) event.preventDefault();
+  };
+  const down = (finger, at) => {
+    fingers.set(finger, at);
+    values = axes.map((name) => places(name).map((place) => u.posToVal(place, name)));
+  };
+  const move = (finger, at) => {
+    if (!fingers.has(finger)) return;
+    fingers.set(finger, at);
+    if (fingers.size !== 2) return;
+    axes.forEach((name, axis) => {
+      const [one, other] = places(name);
+      const [of, and] = values[axis];
+      // Fingers side by side say nothing of the other axis.
+      if (Math.abs(other - one) < 20) return;
+      const perPixel = (and - of) / (other - one);
+      const ends = name === "x" ? [0, u.over.clientWidth] : [u.over.clientHeight, 0];
+      const [least, most] = ends.map((end) => of + (end - one) * perPixel);
+      const [from, to] = plot[name].range;
+      if (!(least < most)) return;
+      const scale = { min: Math.max(from, least), max: Math.min(to, most) };
+      together(entry).forEach((mate) => mate.u.setScale(name, scale));
+    });
+  };
+  const up = (finger) => fingers.delete(finger);
+  u.over.addEventListener("pointerdown", touched(down));
+  u.over.addEventListener("pointermove", touched(move));
+  for (const end of ["pointerup", "pointercancel", "pointerleave"]) {
+    u.over.addEventListener(end, touched(up));
+  }
+}
+
 // A click on a variant's name in a legend holds for the page.
 function toggled(u, plot, index, change) {
   const of = plot.series[index - 1];
@@ -497,6 +541,7 @@ function draw(entry) {
   entry.u = new uPlot(options(plot, width), table(plot), entry.holder);
   watchNames(entry.u, plot);
   watchKeys(entry);
+  watchFingers(entry);
   if (plot.series.length === 0) {
     const line = document.createElement("p");
     line.className = "readout";

@@ -143,6 +143,34 @@ impl Open {
         self.tab.call_method(event).expect("a mouse");
     }
 
+    /// Puts fingers on points of the window, moves them there, or lifts those that are not there.
+    pub fn touch(&self, kind: Input::DispatchTouchEventTypeOption, fingers: &[[f64; 2]]) {
+        let points = fingers
+            .iter()
+            .zip(0_u32..)
+            .map(|(&[x, y], id)| Input::TouchPoint {
+                x,
+                y,
+                radius_x: None,
+                radius_y: None,
+                rotation_angle: None,
+                force: None,
+                tangential_pressure: None,
+                tilt_x: None,
+                tilt_y: None,
+                twist: None,
+                id: Some(id.into()),
+            });
+        let event = Input::DispatchTouchEvent {
+            Type: kind,
+            touch_points: points.collect(),
+            modifiers: None,
+            timestamp: None,
+        };
+        self.tab.call_method(event).expect("a touch screen");
+        self.ask("settled()");
+    }
+
     /// Moves the mouse to a point of the window; the page has reacted.
     pub fn point_at(&self, at: [f64; 2]) {
         self.mouse(Input::DispatchMouseEventTypeOption::MouseMoved, at, 0);
