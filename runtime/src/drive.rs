@@ -332,7 +332,7 @@ struct Unfit {
 
 /// What the supervisor makes of a period that passes no check: start-up, a fault or off on purpose,
 /// or control after all, of a fast rotor that is braked and of a disturbed Hall code that is bridged.
-/// The sample is passed by value, so that it uses memory on this path only.
+/// The sample is passed by value, so that only this path stores it.
 #[cold]
 #[inline(never)]
 fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> Unfit {

@@ -501,10 +501,10 @@ impl Code {
                 "Lower max_current, or leave out residual_timeout: at full current it sees nothing.",
             ),
             Self::StepExceedsPeriod => say(
-                "The cycles of the longest path of a step in control, with all wait states of the chip's memory, are more than the control period has. They were counted on the linked code of this drive, or are estimated from the operations of its step. A step that comes too late loses a period of control.",
+                "The cycles of the longest path of a step, with all wait states of the chip's memory, are more than the control period has. They were counted in this project's firmware with the same drive, or are estimated from the operations of the step, with an error that counts too; C takes more. A step that comes too late loses a period of control.",
                 "f_pwm = \"20 kHz\"\nkind = \"pdcc\"\ntarget = \"cortex_m0\"",
                 "f_pwm = \"20 kHz\"\nkind = \"pdcc\"\ntarget = \"cortex_m4\"",
-                "State core_clock if your core is faster, lower f_pwm, or choose a controller with a shorter step: `hexagen advise` compares them. A core with a cache or a prefetch buffer may hold the period nevertheless: measure it.",
+                "State core_clock if your core is faster, lower f_pwm, raise pwm_per_control, or choose a controller with a shorter step: `hexagen advise` compares them. A core with a cache or a prefetch buffer may hold the period nevertheless: measure it.",
             ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",

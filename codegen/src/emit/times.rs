@@ -24,19 +24,20 @@ pub(super) fn list<'a>(times: impl Iterator<Item = &'a StepTime>) -> Vec<String>
         return vec![];
     };
     let estimated = if times.iter().any(|time| time.errors.is_some()) {
-        " Where an error stands in brackets, a figure is estimated from the operations of the step: it is the largest of the counted drives that the estimate was not fitted to."
+        " Where an error stands in brackets, the figure before it is estimated from the operations of the step: it is the largest among the counted drives, each estimated from the others."
     } else {
         ""
     };
     let compiler = first.chip.compiler;
     let mut lines = vec![format!(
-        "Time of a step in the code of {compiler}, cycles with every wait state of the chip's memory and without credit for prefetch and caches.{estimated}"
+        "Time of a step in Rust ({compiler}, `opt-level = 3`, `lto = \"fat\"`, without the feature `signals`), cycles with every wait state of the chip's memory and without credit for prefetch and caches. Any step includes start-up, trips, braking of a fast rotor and bridged Hall codes.{estimated}"
     )];
-    lines.extend(times.into_iter().map(item));
+    lines.extend(times.into_iter().flat_map(item));
     lines
 }
 
-fn item(time: &StepTime) -> String {
+/// Lines that are short enough not to be wrapped, which would depend on the figures.
+fn item(time: &StepTime) -> [String; 4] {
     let told = time.told();
     let errors = time
         .errors
@@ -45,18 +46,36 @@ fn item(time: &StepTime) -> String {
         Some(errors) => errors.into_array(),
         None => Default::default(),
     };
-    format!(
-        "- {}, {} at {}: {} instructions in most steps{normal}, at most {} in control{control} and {} with start-up and trips{any}; at most {} cycles in control{control_cycles}, {} of the control period, and {} with start-up and trips{any_cycles}.",
-        time.chip.name,
-        time.chip.core,
-        engineering(time.clock, "Hz"),
-        told.normal,
-        told.control,
-        told.any,
-        told.control_cycles,
-        whole_percent(time.share()),
-        told.any_cycles,
-    )
+    let chip = time.chip;
+    let clock = engineering(time.clock, "Hz");
+    let at = if time.clock <= chip.clock {
+        format!("{}, {} at {clock}, {}", chip.name, chip.core, chip.assumed)
+    } else {
+        let of_chip = engineering(chip.clock, "Hz");
+        format!(
+            "{} at {clock}, cycles as on {} at {of_chip}, {}",
+            chip.core, chip.name, chip.assumed
+        )
+    };
+    let most = if time.is_bound() {
+        "at most "
+    } else {
+        "about "
+    };
+    [
+        format!("- {at}:"),
+        format!("  - in most steps {} instructions{normal};", told.normal),
+        format!(
+            "  - in control {most}{} instructions{control} and {} cycles{control_cycles}, {} of the period;",
+            told.control,
+            told.control_cycles,
+            whole_percent(time.share()),
+        ),
+        format!(
+            "  - in any step {most}{} instructions{any} and {} cycles{any_cycles}.",
+            told.any, told.any_cycles,
+        ),
+    ]
 }
 
 /// In whole percents, rounded up.

@@ -12,8 +12,8 @@ use fnv::FnvHasher;
 use std::fmt;
 use std::hash::Hasher;
 
-/// Figures of a step. Any step: start-up, calibration and trips included; in control: without
-/// them. Cycles are those of the chip, with the wait states of its memory and without credit for
+/// Figures of a step. Any step: start-up, calibration, trips, braking of a fast rotor and bridged
+/// Hall codes included; in control: without them. Cycles are those of the chip, with the wait states of its memory and without credit for
 /// prefetch and caches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Times<T> {
@@ -40,6 +40,8 @@ pub struct Chip {
     pub name: &'static str,
     /// Clock of the core, hertz.
     pub clock: f64,
+    /// What the cycles assume.
+    pub assumed: &'static str,
     /// The compiler whose code was counted.
     pub compiler: &'static str,
     estimates: Times<Estimate>,
@@ -53,7 +55,7 @@ pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
     /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
-    /// drive's figure.
+    /// estimate.
     pub error: f64,
 }
 
@@ -139,9 +141,18 @@ impl StepTime {
         self.clock * self.period
     }
 
-    /// Whether a step may take longer than the control period on the core that is named.
+    /// Whether a step may take longer than the control period on the core that is named, an
+    /// estimate with its error.
     pub fn is_too_long(&self) -> bool {
-        self.is_named && self.share() > 1.0
+        let error = self.errors.map_or(0.0, |errors| errors.any_cycles);
+        let most = f64::from(self.times.any_cycles) * (1.0 + error);
+        self.is_named && most > self.cycles_of_period()
+    }
+
+    /// Whether the figures are bounds: counted, and at no higher clock than the chip's, beyond which
+    /// a memory takes more wait states.
+    pub fn is_bound(&self) -> bool {
+        self.errors.is_none() && self.clock <= self.chip.clock
     }
 
     /// The figures, estimates with two digits.
@@ -267,6 +278,7 @@ mod tests {
     const CHIP: Chip = Chip {
         target: "cortex_m0",
         core: "Core",
+        assumed: "code in flash",
         name: "Chip",
         clock: 48e6,
         compiler: "rustc",
@@ -323,7 +335,17 @@ mod tests {
         );
         assert_eq!(time(None).told().control_cycles, 1234);
         assert!((time(None).share() - 1234.0 / 2400.0).abs() < 1e-12);
-        assert!(!time(None).is_too_long());
+        let with = |any_cycles, errors| StepTime {
+            times: Times {
+                any_cycles,
+                ..time(errors).times
+            },
+            ..time(errors)
+        };
+        assert!(!with(2400, None).is_too_long());
+        assert!(with(2401, None).is_too_long());
+        assert!(with(2200, Some(Times::of([0.1; 5]))).is_too_long());
+        assert!(!with(2100, Some(Times::of([0.1; 5]))).is_too_long());
     }
 
     /// The name and the core change nothing of what a drive computes.
@@ -337,6 +359,10 @@ mod tests {
         let text = include_str!("../example.toml");
         let known = of(text, "pdcc");
         assert_eq!(of(text, "pdcc:target=cortex_m4,core_clock=72 MHz"), known);
+        let renamed = text.replace("name = \"", "name = \"Other");
+        assert_ne!(renamed, text);
+        assert_eq!(of(&renamed, "pdcc"), known);
         assert_ne!(of(text, "pdcc:delay=0"), known);
+        assert_ne!(of(text, "pdcc:word=16"), known);
     }
 }

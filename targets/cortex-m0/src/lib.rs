@@ -13,7 +13,7 @@ pub mod drives {
     //! All drives of this firmware.
     #![expect(
         deprecated,
-        reason = "the generator warns of PHCC near its trip level (HX0610, HX0611)"
+        reason = "the generator warns of PHCC near its trip level (HX0610, HX0611), and of steps longer than a period of this core (HX0614)"
     )]
     drives_for!(cortex_m0);
 }

@@ -49,28 +49,30 @@ impl From<&StepTime> for Time {
     }
 }
 
-/// One line: cycles on the first chip, and shares of the control period on all.
+/// Cycles of a step in control on the first chip, and shares of the control period on two: what fits
+/// into a line. Estimates are told as about.
 pub fn sentence(times: &[StepTime]) -> String {
-    let Some((first, others)) = times.split_first() else {
+    let Some(first) = times.first() else {
         return "not known".to_owned();
     };
-    let share = |time: &StepTime| format!("{} %", significant(100.0 * time.share(), 2));
-    let others: String = others.iter().fold(String::new(), |mut text, time| {
-        let before = if text.is_empty() { "; " } else { ", " };
-        text += &format!("{before}{} {}", time.chip.name, share(time));
-        text
-    });
+    let clock = if first.is_named {
+        format!(" at {}", engineering(first.clock, "Hz"))
+    } else {
+        String::new()
+    };
+    let share = |time: &StepTime| {
+        let is_rougher = first.is_bound() && !time.is_bound();
+        let about = if is_rougher { "about " } else { "" };
+        let percent = significant(100.0 * time.share(), 2);
+        let period = if time == first { " of the period" } else { "" };
+        format!("{about}{percent} %{period} on {}", time.chip.name)
+    };
+    let shares: Vec<String> = times.iter().take(2).map(share).collect();
     format!(
-        "{} {} cycles, {} of the period ({}, {}){others}",
-        if first.errors.is_some() {
-            "about"
-        } else {
-            "at most"
-        },
+        "{} {} cycles (Rust): {}{clock}",
+        if first.is_bound() { "at most" } else { "about" },
         first.told().control_cycles,
-        share(first),
-        first.chip.name,
-        engineering(first.clock, "Hz"),
+        shares.join(", "),
     )
 }
 
@@ -90,12 +92,20 @@ mod tests {
         };
         let (counted, data) = told("pdcc");
         assert!(counted.starts_with("at most "), "{counted}");
-        assert!(counted.contains(" % of the period (STM32G431, 170 MHz); STM32F030 "));
+        assert!(
+            counted.contains(" % of the period on STM32G431, about "),
+            "{counted}"
+        );
+        // Behind a title of twelve columns.
+        assert!(counted.len() <= 88, "{counted}");
         assert_eq!(data.len(), 3);
         assert_eq!(data[0].error_pct, None);
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
-        assert!(estimated.ends_with("(STM32F030, 64 MHz)"), "{estimated}");
+        assert!(
+            estimated.ends_with(" on STM32F030 at 64 MHz"),
+            "{estimated}"
+        );
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));
     }
 }

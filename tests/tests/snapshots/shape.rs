@@ -10,7 +10,7 @@ const CALLERS: [&str; 2] = ["step", "track"];
 /// the stage's own lines read; a head has them, too. Of C how operators are spelt: both languages
 /// print one plan, and Rust's lines have the names.
 pub fn shape_in(kind: &str, unit: &str, line: &str) -> String {
-    let shape = shape(line);
+    let shape = shape(line.trim());
     let shape = if CALLERS.contains(&unit) {
         without_arguments(&shape)
     } else {

@@ -35,7 +35,7 @@ pub fn period_too_long(
     )
 }
 
-/// A step in control may take longer than the period. `given` is the core as written; `clock` in
+/// A step may take longer than the control period. `given` is the core as written; `clock` in
 /// hertz, stated or the chip's, `period` in seconds; `error` of an estimate, as a part.
 pub fn step_exceeds_period(
     at: &Location,
@@ -46,11 +46,13 @@ pub fn step_exceeds_period(
     error: Option<f64>,
 ) -> Diagnostic {
     let told = match error {
-        Some(error) => format!(
-            "estimated within {}",
-            percent((100.0 * error).ceil() / 100.0)
-        ),
-        None => "counted".to_owned(),
+        Some(error) => {
+            let error = percent((100.0 * error).ceil() / 100.0);
+            format!(
+                "about {cycles} cycles on {chip} in Rust, estimated with an error of up to {error}"
+            )
+        }
+        None => format!("{cycles} cycles on {chip} in Rust"),
     };
     let faster = if is_stated {
         ""
@@ -61,7 +63,7 @@ pub fn step_exceeds_period(
         Code::StepExceedsPeriod,
         at,
         format!(
-            "`target`: {given}: a step in control takes up to {cycles} cycles on an {chip} ({told}), and the control period of {} has {} at {}; {faster}lower `f_pwm`, or choose a controller with a shorter step",
+            "`target`: {given}: a step takes up to {told}, and the control period of {} has {} at {}; {faster}lower `f_pwm`, raise `pwm_per_control`, or choose a controller with a shorter step",
             engineering(period, "s"),
             (clock * period).floor(),
             engineering(clock, "Hz"),

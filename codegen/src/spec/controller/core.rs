@@ -9,7 +9,7 @@ words! {
     pub enum Target {
         "portable" = Portable: "any core",
         "cortex_m4" = CortexM4: "one instruction for the upper half of a 32-bit product",
-        "riscv32" = Riscv32: "the same on RV32IM",
+        "riscv32" = Riscv32: "RV32IM, with the same instruction",
         "cortex_m0" = CortexM0: "no such instruction: words of 16 bits where they suffice; the type's documentation states the loss of accuracy",
     }
 }
@@ -41,7 +41,8 @@ impl Core {
             clock: (reader.plain_quantity(errors, "core_clock")).map(|clock| clock.si),
         };
         if core.name().is_none() {
-            reader.refuse_without(errors, "target: cortex_m4", &["core_clock"]);
+            let named = "target: cortex_m0 | cortex_m4 | riscv32";
+            reader.refuse_without(errors, named, &["core_clock"]);
         }
         core
     }

@@ -8,6 +8,7 @@ use crate::targets::Target;
 use hexagen_codegen::timing::{Times, Work, counted, digest, work};
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::process::Command;
@@ -24,13 +25,16 @@ pub struct Calibration {
 pub struct Drive {
     pub symbol: String,
     pub calibration: Calibration,
+    /// Whether others are estimated from it.
+    pub is_typical: bool,
     pub times: Times<u32>,
 }
 
 /// The drives of a target, and the compiler that made their code.
 pub type Counted = (Target, String, Vec<Drive>);
 
-/// Weights, and the largest relative error of a drive by the weights fitted to all others.
+/// Weights, and the largest error of a drive by the weights fitted to all others, as a part of the
+/// estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fit {
     weights: Work,
@@ -95,31 +99,38 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
             let error = number(fit.error);
             format!("Estimate::of([{weights}], {error})")
         }));
-        let mut counted: Vec<(u64, String)> = drives
-            .iter()
-            .map(|drive| {
-                let figures = drive.times.map(|figure| figure.to_string());
-                (drive.calibration.digest, times(figures))
-            })
-            .collect();
-        counted.sort_unstable();
-        counted.dedup_by_key(|(digest, _)| *digest);
+        let mut counted = BTreeMap::<u64, Times<u32>>::new();
+        for drive in drives {
+            // Of drives with one specification the longer times.
+            let times = counted
+                .entry(drive.calibration.digest)
+                .or_insert(drive.times);
+            *times = times
+                .zip(drive.times)
+                .map(|(known, other)| known.max(other));
+        }
         let counted = counted
             .into_iter()
-            .fold(String::new(), |mut all, (digest, times)| {
+            .fold(String::new(), |mut all, (digest, figures)| {
                 let groups =
                     [48, 32, 16, 0].map(|shift| format!("{:04x}", digest >> shift & 0xffff));
-                let _ = write!(all, "(0x{}, {times}),", groups.join("_"));
+                let _ = write!(
+                    all,
+                    "(0x{}, {}),",
+                    groups.join("_"),
+                    times(figures.map(|figure| figure.to_string()))
+                );
                 all
             });
         let _ = write!(
             chips,
-            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, compiler: {compiler:?}, \
+            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, assumed: {:?}, compiler: {compiler:?}, \
              estimates: {estimates}, counted: &[{counted}] }},",
             core(*target),
             name(*target),
             chip.name,
             chip.clock,
+            chip.assumed,
         );
     }
     let _ = write!(
@@ -175,7 +186,8 @@ fn number(number: f64) -> String {
 
 /// The fit of each figure.
 fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
-    let points = drives.iter().map(|drive| {
+    let typical = drives.iter().filter(|drive| drive.is_typical);
+    let points = typical.map(|drive| {
         let times = drive.times.map(f64::from);
         drive.calibration.work.zip(times).into_array()
     });
@@ -197,7 +209,7 @@ fn fit(points: &[(Work, f64)]) -> Result<Fit, BenchError> {
         let mut others = points.to_vec();
         others.remove(left_out);
         let estimate = dot(&weights(&others)?, work);
-        error = error.max((estimate / time - 1.0).abs());
+        error = error.max((time / estimate - 1.0).abs());
     }
     Ok(Fit {
         weights: weights(points)?,
@@ -258,7 +270,7 @@ mod tests {
         points.push((work, 1.25 * time));
         let found = fit(&points).expect("a fit");
         assert!((found.weights[2] - 1.5).abs() < 1e-6);
-        assert!((found.error - 0.2).abs() < 1e-6, "{}", found.error);
+        assert!((found.error - 0.25).abs() < 1e-6, "{}", found.error);
     }
 
     #[test]

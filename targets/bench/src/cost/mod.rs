@@ -94,6 +94,8 @@ struct Row {
     state: Option<usize>,
     /// Only for drives in Rust.
     calibration: Option<Calibration>,
+    /// Whether others are estimated from it: the experiment has the paper's errors in it.
+    is_typical: bool,
 }
 
 /// What is run on a step function.
@@ -110,6 +112,7 @@ impl Row {
         Some(Drive {
             symbol: self.symbol.clone(),
             calibration: self.calibration?,
+            is_typical: self.is_typical,
             times: self.figures().times()?,
         })
     }
@@ -177,6 +180,10 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
     }
     if options.accept && options.only.is_none() && targets.len() == Target::ALL.len() {
         calibration::write(&calibrated)?;
+    } else if options.accept {
+        println!(
+            "codegen/src/timing/figures.rs is as before: `cargo xtask cost --accept`, of all targets and steps, writes it"
+        );
     }
     println!("{LEGEND}");
     if rises.is_empty() {
@@ -219,6 +226,7 @@ fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> 
             tables: None,
             state: None,
             calibration: None,
+            is_typical: false,
         });
     }
 
@@ -302,6 +310,7 @@ fn rows_of(
             tables: run.tables,
             state: Some(listed.size),
             calibration: run.calibration.filter(|_| is_in_rust),
+            is_typical: program != EXPERIMENT,
         })
     };
     steps.par_iter().map(row_of).collect()

@@ -7,11 +7,12 @@ use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
+use hexagen_codegen::timing::StepTime;
 
 use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
-use hexagen_lab::engine::{EngineKind, Model, PlantOptions, SelectedMotor};
+use hexagen_lab::engine::{EngineKind, Model, MotorSource, PlantOptions, SelectedMotor, prepare};
 use hexagen_lab::envelope::TorqueBounds;
 use hexagen_lab::plant::{PlantParams, Truth};
 use hexagen_lab::results::{
@@ -399,7 +400,7 @@ pub fn data() -> Results {
         },
         own: Some(Own {
             variant: 0,
-            times: vec![],
+            times: times(),
         }),
         links: links(&paper_motor(), &variants[0].generated.as_ref().expect("is shown").rust),
         variants,
@@ -413,4 +414,11 @@ pub fn data() -> Results {
         ],
         notes: vec!["A note.".to_owned()],
     }
+}
+
+/// Times of the default drive's step.
+fn times() -> Vec<StepTime> {
+    let motor = MotorSource::of_library("trivedi-keshri-660w").expect("a motor");
+    let drive = prepare(&motor, Some("pdcc")).expect("a drive");
+    drive.generated.interface.times
 }

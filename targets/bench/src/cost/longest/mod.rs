@@ -33,12 +33,7 @@ use std::path::Path;
 
 /// What a step calls when it does not control: in start-up, calibration and pre-charge, in trips,
 /// coasting and braking, and where it bridges a disturbed Hall code.
-const AT_REST: [&str; 4] = [
-    "5drive4rest",
-    "5drive7at_rest",
-    "5drive4trip",
-    "step_at_rest",
-];
+const AT_REST: [&str; 3] = ["5drive4rest", "5drive4trip", "step_at_rest"];
 
 /// Code of a program, ready for the search, and a chip to run it.
 #[derive(Debug)]
