@@ -223,14 +223,14 @@ impl<C: Control> ControlLoop<'_, C> {
                 &resolved
             }
         };
-        let checked = match core.supervisor.check(limits, sensors, seen, is_demanded) {
-            Some(checked) => C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen)),
-            None => {
-                let unfit = rest(set_point, core, *sample);
-                match unfit.rest {
-                    Rest::Control | Rest::Against(_) => unfit.checked,
-                    Rest::Legs(state) => return at_rest(set_point, core, &unfit, state),
-                }
+        let checked = core.supervisor.check(limits, sensors, seen, is_demanded);
+        let checked = if let Some(checked) = checked {
+            C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen))
+        } else {
+            let unfit = rest(set_point, core, *sample);
+            match unfit.rest {
+                Rest::Control | Rest::Against(_) => unfit.checked,
+                Rest::Legs(state) => return at_rest(set_point, core, &unfit, state),
             }
         };
         let rotor = C::track(&mut core.law, &checked);

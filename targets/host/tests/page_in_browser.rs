@@ -174,6 +174,7 @@ fn two_fingers_zoom_what_is_between_them() {
     let at = |share: f64| page.point(0, share, 0.5);
     page.touch(TouchStart, &[at(0.4)]);
     page.touch(TouchMove, &[at(0.5)]);
+    page.touch(TouchEnd, &[]);
     assert_eq!(scales(), whole, "one finger scrolls");
     page.touch(TouchStart, &[at(0.4), at(0.6)]);
     page.touch(TouchMove, &[at(0.3), at(0.7)]);

@@ -482,26 +482,25 @@ function watchKeys(entry) {
 // the page, a double tap shows all.
 function watchFingers(entry) {
   const { plot, u } = entry;
-  const fingers = new Map();
-  let values = [];
   const axes = plot.series.length > 0 ? ["x"] : ["x", "y"];
-  const places = (name) => [...fingers.values()].map((at) => at[name]);
-  const touched = (handle) => (event) => {
-    if (event.pointerType !== "touch") return;
+  let values;
+  const fingers = ({ targetTouches: touches }) => {
     const { left, top } = u.over.getBoundingClientRect();
-    handle(event.pointerId, { x: event.clientX - left, y: event.clientY - top });
-    if (fingers.size === 2) event.preventDefault();
+    return [...touches].map(({ clientX, clientY }) => ({ x: clientX - left, y: clientY - top }));
   };
-  const down = (finger, at) => {
-    fingers.set(finger, at);
-    values = axes.map((name) => places(name).map((place) => u.posToVal(place, name)));
+  const begin = (event) => {
+    const places = fingers(event);
+    const valueOf = (name) => places.map((place) => u.posToVal(place[name], name));
+    values = places.length === 2 ? axes.map(valueOf) : null;
+    // The page neither scrolls nor zooms.
+    if (values) event.preventDefault();
   };
-  const move = (finger, at) => {
-    if (!fingers.has(finger)) return;
-    fingers.set(finger, at);
-    if (fingers.size !== 2) return;
+  const move = (event) => {
+    if (!values) return;
+    event.preventDefault();
+    const places = fingers(event);
     axes.forEach((name, axis) => {
-      const [one, other] = places(name);
+      const [one, other] = places.map((place) => place[name]);
       const [of, and] = values[axis];
       // Fingers side by side say nothing of the other axis.
       if (Math.abs(other - one) < 20) return;
@@ -509,16 +508,14 @@ function watchFingers(entry) {
       const ends = name === "x" ? [0, u.over.clientWidth] : [u.over.clientHeight, 0];
       const [least, most] = ends.map((end) => of + (end - one) * perPixel);
       const [from, to] = plot[name].range;
-      if (!(least < most)) return;
       const scale = { min: Math.max(from, least), max: Math.min(to, most) };
-      together(entry).forEach((mate) => mate.u.setScale(name, scale));
+      if (least < most) together(entry).forEach((mate) => mate.u.setScale(name, scale));
     });
   };
-  const up = (finger) => fingers.delete(finger);
-  u.over.addEventListener("pointerdown", touched(down));
-  u.over.addEventListener("pointermove", touched(move));
-  for (const end of ["pointerup", "pointercancel", "pointerleave"]) {
-    u.over.addEventListener(end, touched(up));
+  const heard = { passive: false };
+  u.over.addEventListener("touchmove", move, heard);
+  for (const change of ["touchstart", "touchend", "touchcancel"]) {
+    u.over.addEventListener(change, begin, heard);
   }
 }
 
