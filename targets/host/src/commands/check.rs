@@ -28,8 +28,9 @@ pub struct Options {
 /// Speeds of the runs over the rated one.
 const SPEEDS: [f64; 2] = [0.2, 1.0];
 
-/// Ripple that is worth a word, peak to peak in percent of the mean.
-const RIPPLE: f64 = 25.0;
+/// Ripple that is worth a word, peak to peak in percent of the mean: more than a default drive has at
+/// up to 15 electrical degrees in a period.
+const RIPPLE: f64 = 7.0;
 
 /// Least torque at rated speed of a drive that works, percent.
 const LEAST_TORQUE: f64 = 50.0;
@@ -197,9 +198,7 @@ impl Checked {
         if lost(rated) {
             buts.push(left);
         }
-        if slow.ripple_pp_pct.is_some_and(|ripple| ripple > RIPPLE) {
-            buts.push("the torque ripples".to_owned());
-        }
+        buts.extend(self.rippling());
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
@@ -213,6 +212,20 @@ impl Checked {
             format!("works, but {}", buts.join("; "))
         };
         (true, verdict)
+    }
+
+    /// The greatest ripple, if it is worth a word.
+    fn rippling(&self) -> Option<String> {
+        let ripples = self
+            .points
+            .iter()
+            .filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
+        let (rpm, ripple) = ripples.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+        let text = format!(
+            "the torque ripples by {} % at {rpm:.0} rpm",
+            significant(ripple, 2)
+        );
+        (ripple > RIPPLE).then_some(text)
     }
 
     /// What is left of the torque at a speed, and what takes the rest.
