@@ -1,7 +1,6 @@
 //! Time of a step on named chips, as text and as data.
 
 use crate::text::significant;
-use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::timing::StepTime;
 use serde::Serialize;
 
@@ -49,30 +48,19 @@ impl From<&StepTime> for Time {
     }
 }
 
-/// Cycles of a step in control on the first chip, and shares of the control period on two: what fits
-/// into a line. Estimates are told as about.
+/// One line on the first chip: the core that is named, else the Cortex-M4. Estimates are told as about.
 pub fn sentence(times: &[StepTime]) -> String {
-    let Some(first) = times.first() else {
+    let Some(time) = times.first() else {
         return "not known".to_owned();
     };
-    let clock = if first.is_named {
-        format!(" at {}", engineering(first.clock, "Hz"))
-    } else {
-        String::new()
-    };
-    let share = |time: &StepTime| {
-        let is_rougher = first.is_bound() && !time.is_bound();
-        let about = if is_rougher { "about " } else { "" };
-        let percent = significant(100.0 * time.share(), 2);
-        let period = if time == first { " of the period" } else { "" };
-        format!("{about}{percent} %{period} on {}", time.chip.name)
-    };
-    let shares: Vec<String> = times.iter().take(2).map(share).collect();
+    let told = time.told();
     format!(
-        "{} {} cycles (Rust): {}{clock}",
-        if first.is_bound() { "at most" } else { "about" },
-        first.told().control_cycles,
-        shares.join(", "),
+        "{} {} cycles in control, {} % of the period, {} in any step; Rust, {}",
+        if time.is_bound() { "at most" } else { "about" },
+        told.control_cycles,
+        significant(100.0 * time.share(), 2),
+        told.any_cycles,
+        time.chip.name,
     )
 }
 
@@ -93,7 +81,7 @@ mod tests {
         let (counted, data) = told("pdcc");
         assert!(counted.starts_with("at most "), "{counted}");
         assert!(
-            counted.contains(" % of the period on STM32G431, about "),
+            counted.ends_with(" in any step; Rust, STM32G431"),
             "{counted}"
         );
         // Behind a title of twelve columns.
@@ -103,7 +91,7 @@ mod tests {
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
         assert!(
-            estimated.ends_with(" on STM32F030 at 64 MHz"),
+            estimated.ends_with(" in any step; Rust, STM32F030"),
             "{estimated}"
         );
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));

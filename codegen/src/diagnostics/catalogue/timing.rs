@@ -35,8 +35,9 @@ pub fn period_too_long(
     )
 }
 
-/// A step may take longer than the control period. `given` is the core as written; `clock` in
-/// hertz, stated or the chip's, `period` in seconds; `error` of an estimate, as a part.
+/// A step may take longer than the control period. `given` is the core as written; `cycles` of a step at
+/// most, an estimate's error (a part of it) not added; `clock` in hertz, stated or the chip's; `period`
+/// in seconds.
 pub fn step_exceeds_period(
     at: &Location,
     given: &str,
@@ -45,14 +46,15 @@ pub fn step_exceeds_period(
     period: f64,
     error: Option<f64>,
 ) -> Diagnostic {
+    let most = (f64::from(cycles) * (1.0 + error.unwrap_or(0.0))).ceil();
     let told = match error {
         Some(error) => {
             let error = percent((100.0 * error).ceil() / 100.0);
             format!(
-                "about {cycles} cycles on {chip} in Rust, estimated with an error of up to {error}"
+                "{most} cycles on {chip} in Rust (estimated as {cycles}, with an error of up to {error})"
             )
         }
-        None => format!("{cycles} cycles on {chip} in Rust"),
+        None => format!("{most} cycles on {chip} in Rust"),
     };
     let faster = if is_stated {
         ""
@@ -63,10 +65,11 @@ pub fn step_exceeds_period(
         Code::StepExceedsPeriod,
         at,
         format!(
-            "`target`: {given}: a step takes up to {told}, and the control period of {} has {} at {}; {faster}lower `f_pwm`, raise `pwm_per_control`, or choose a controller with a shorter step",
+            "`target`: {given}: a step takes up to {told}, trips and braking included, and the control period of {} has {} at {}; {faster}control at {} at most (lower `f_pwm`, or raise `pwm_per_control`), or choose a controller with a shorter step",
             engineering(period, "s"),
             (clock * period).floor(),
             engineering(clock, "Hz"),
+            engineering(at_most(clock / most), "Hz"),
         ),
     )
 }

@@ -25,6 +25,16 @@ const EMF_CONSTANT: [&str; 7] = [
     "k_e",
 ];
 
+/// Ratings as data sheets call them.
+const RATINGS: [(&str, &str); 6] = [
+    ("nominal_speed", "rated_speed"),
+    ("nominal_torque", "rated_torque"),
+    ("nominal_current", "rated_current"),
+    ("continuous_current", "rated_current"),
+    ("continuous_torque", "rated_torque"),
+    ("max_continuous_current", "rated_current"),
+];
+
 /// Words of data sheets and files for those that fields take.
 const WORDS: [(&str, &str); 6] = [
     ("wye", "star"),
@@ -54,7 +64,8 @@ pub(super) fn meant(name: &str) -> Option<&'static str> {
     } else if is_in(&EMF_CONSTANT) {
         Some("back_emf")
     } else {
-        None
+        let rating = RATINGS.iter().find(|(other, _)| *other == name);
+        rating.map(|(_, meant)| *meant)
     }
 }
 

@@ -284,6 +284,14 @@ fn no_remedy_offers_a_basis_that_was_not_named() {
 }
 
 #[test]
+fn nominal_ratings_lead_to_rated_ones() {
+    let told = changed("rated_speed = \"2000 rpm\"", "nominal_speed = \"2000 rpm\"");
+    let line = told.lines().next().unwrap_or_default();
+    let expected = "`motor` has no field `nominal_speed`; did you mean `rated_speed`?";
+    assert!(line.ends_with(expected), "{told}");
+}
+
+#[test]
 fn names_of_data_sheets_lead_to_the_field_and_its_number() {
     let told = changed("pole_pairs = 4", "Pole_Count = 8");
     assert_eq!(

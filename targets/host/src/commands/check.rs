@@ -8,6 +8,7 @@ use clap::Args;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{CurrentSensing, Reference, RotorSensing, Spec};
+use hexagen_codegen::timing::StepTime;
 use hexagen_lab::closed_loop::{Held, Trip};
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::text::significant;
@@ -95,6 +96,9 @@ pub struct Checked {
     pub points: Vec<Point>,
     /// Time of a step, by chip.
     pub step: Vec<Time>,
+    /// Whether a step may take longer than the control period on the core that is named; the runs leave
+    /// its time out.
+    pub overruns: bool,
     /// Warnings of the generator.
     pub warnings: Vec<String>,
 }
@@ -145,6 +149,7 @@ impl Checked {
         let set_point = torque / envelope.torque_constant();
         let taken = envelope.bus_voltage(motor.rated_speed, set_point);
         let lasts = envelope.speed(torque).unwrap_or(0.0);
+        let times = &drive.generated.interface.times;
         let mut checked = Self {
             motor: drive.motor.clone(),
             controller: drive.variant.clone(),
@@ -165,6 +170,7 @@ impl Checked {
                 .iter()
                 .map(Time::from)
                 .collect(),
+            overruns: times.iter().any(StepTime::is_too_long),
             warnings: drive.warnings.clone(),
         };
         let (works, verdict) = checked.judge();
@@ -202,6 +208,9 @@ impl Checked {
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
+        }
+        if self.overruns {
+            buts.push("a step may take longer than the period".to_owned());
         }
         if !self.warnings.is_empty() {
             buts.push("see the warnings".to_owned());

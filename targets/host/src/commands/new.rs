@@ -169,7 +169,7 @@ impl Draft {
                 line.fields.iter().any(states)
             };
             let is_stated = self.board.as_ref().is_some_and(is_of_board);
-            self.value_of(line).is_some() || (has_place(line) && !is_stated)
+            self.values_of(line).next().is_some() || (has_place(line) && !is_stated)
         })
     }
 
@@ -177,17 +177,18 @@ impl Draft {
         SECTIONS.iter().flat_map(|(_, lines)| self.lines(lines))
     }
 
-    fn value_of(&self, line: &Line) -> Option<&(String, String)> {
+    /// What was given for a line: one of its fields, or several, as two constants of one EMF.
+    fn values_of(&self, line: &Line) -> impl Iterator<Item = &(String, String)> {
         self.values
             .iter()
-            .find(|(name, _)| line.fields.contains(&name.as_str()))
+            .filter(|(name, _)| line.fields.contains(&name.as_str()))
     }
 
     /// Needed fields without value and default.
     fn missing(&self) -> Vec<&'static str> {
         self.all_lines()
             .filter(|line| line.is_needed && line.default.is_none())
-            .filter(|line| self.value_of(line).is_none())
+            .filter(|line| self.values_of(line).next().is_none())
             .map(|line| line.fields[0])
             .collect()
     }
@@ -237,7 +238,7 @@ impl Draft {
     fn next_question(&self, asked: &[&str]) -> Option<&'static Line> {
         self.all_lines().find(|line| {
             let is_open = line.is_needed && line.default.is_none();
-            is_open && self.value_of(line).is_none() && !asked.contains(&line.fields[0])
+            is_open && self.values_of(line).next().is_none() && !asked.contains(&line.fields[0])
         })
     }
 
@@ -282,12 +283,15 @@ impl Draft {
             let _ = write!(text, "\n[{section}]\n");
             for line in self.lines(lines) {
                 let _ = writeln!(text, "# {}", line.about);
-                let entry = match (self.value_of(line), line.default) {
-                    (Some((name, value)), _) => entry(name, value),
-                    (None, Some(default)) => entry(line.fields[0], default),
-                    (None, None) => format!("# {}", entry(line.fields[0], line.example)),
-                };
-                text.push_str(&entry);
+                let given = self.values_of(line).map(|(name, value)| entry(name, value));
+                let mut entries: Vec<String> = given.collect();
+                if entries.is_empty() {
+                    entries.push(match line.default {
+                        Some(default) => entry(line.fields[0], default),
+                        None => format!("# {}", entry(line.fields[0], line.example)),
+                    });
+                }
+                text.push_str(&entries.join("\n"));
                 text.push('\n');
             }
             // What the template has no line for; an unknown field is told of as one of the motor.
@@ -422,5 +426,22 @@ mod tests {
             .map(ToString::to_string)
             .collect();
         assert!(told.is_empty(), "{told:#?}");
+    }
+
+    #[test]
+    fn all_that_is_given_for_one_line_is_written() {
+        let given = [
+            ("torque_constant", "33.5 mNm/A block_mean"),
+            ("speed_constant", "285 rpm/V block_mean"),
+        ];
+        let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let draft = Draft::of(given.to_vec(), Path::new("ec45.toml")).expect("nothing is wrong");
+        let text = draft.text();
+        for line in [
+            "torque_constant = \"33.5 mNm/A block_mean\"\n",
+            "speed_constant = \"285 rpm/V block_mean\"\n",
+        ] {
+            assert!(text.contains(line), "{line} is not in {text}");
+        }
     }
 }
