@@ -128,10 +128,11 @@ fn warn_of_time(time: &StepTime, origins: &Origins) -> Option<Diagnostic> {
         catalogue::step_exceeds_period(
             origins.at(TARGET),
             &origins.given(TARGET, ""),
-            (time.chip.name, time.told().any_cycles),
+            (time.chip.name, time.most_cycles()),
             (time.clock, origins.is_given("controller.core_clock")),
             time.period,
-            time.errors.map(|errors| errors.any_cycles),
+            time.errors
+                .map(|errors| (time.told().any_cycles, errors.any_cycles)),
         )
     })
 }

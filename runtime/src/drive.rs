@@ -322,7 +322,7 @@ impl<C: Control> ControlLoop<'_, C> {
     }
 }
 
-/// A period that passes no check.
+/// A period that does not pass the check.
 struct Unfit {
     sample: Sample,
     checked: Checked,
@@ -330,9 +330,9 @@ struct Unfit {
     was_tripped: bool,
 }
 
-/// What the supervisor makes of a period that passes no check: start-up, a fault or off on purpose,
-/// or control after all, of a fast rotor that is braked and of a disturbed Hall code that is bridged.
-/// The sample is passed by value, so that only this path stores it.
+/// Asks the supervisor about a period that does not pass its check. The drive rests in start-up, with
+/// a fault or off on purpose. It controls nevertheless to brake a fast rotor, and where a disturbed
+/// Hall code is bridged. The sample is passed by value, so that only this path stores it.
 #[cold]
 #[inline(never)]
 fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> Unfit {

@@ -180,12 +180,12 @@ pub fn live_words(function: &Function) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::{Cost, PathCost, live_words};
-    use crate::ir::{Interval, Output, ProgramBuilder, named};
+    use crate::ir::{Interval, Output, Program, ProgramBuilder, named};
 
-    #[test]
-    fn rare_stages_count_in_the_worst_case_only() {
+    /// A sum and a comparison, and a product in a rare stage.
+    pub(crate) fn with_rare_product() -> Program {
         let b = ProgramBuilder::new("Count", &[]);
         b.stage("read", &[]);
         let word = Interval::symmetric(1000);
@@ -200,7 +200,12 @@ mod tests {
         }
         let [result] = b.join([("result", product, sum)]);
         b.output(Output::Probe("result"), result);
-        let function = b.finish().step;
+        b.finish()
+    }
+
+    #[test]
+    fn rare_stages_count_in_the_worst_case_only() {
+        let function = with_rare_product().step;
         let normal = Cost {
             additions: 1,
             comparisons: 1,

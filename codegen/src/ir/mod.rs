@@ -27,6 +27,8 @@ pub mod verify;
 mod verify_tests;
 
 pub use bounds::{Bounds, Case, StatedError, cases, stated_errors};
+#[cfg(test)]
+pub(crate) use cost::tests::with_rare_product;
 pub use cost::{Cost, PathCost, live_words};
 pub use draft::ProgramBuilder;
 pub use error::{ErrorInterval, Exact, Real};

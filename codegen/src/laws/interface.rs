@@ -36,13 +36,14 @@ pub fn interface(
         clock: core.clock,
         period: inverter.t_s,
     };
+    let times = timing::of_step(scaled.graph.program(), asked);
     Interface {
-        times: timing::of_step(scaled.graph.program(), asked),
         type_name: spec.name.clone(),
         doc: documentation(spec, design, law),
         header: header(design, scaled),
         spec_toml,
         envelope: envelope(spec),
+        times,
         options: options(spec, origins),
         formats: scaled.formats.clone(),
         constants: constants(spec, design, law, accuracy),

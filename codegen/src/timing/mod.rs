@@ -12,9 +12,9 @@ use fnv::FnvHasher;
 use std::fmt;
 use std::hash::Hasher;
 
-/// Figures of a step. Any step: start-up, calibration, trips, braking of a fast rotor and bridged
-/// Hall codes included; in control: without them. Cycles are those of the chip, with the wait states of its memory and without credit for
-/// prefetch and caches.
+/// Figures of a step. Any step includes start-up, calibration, trips, braking of a fast rotor and
+/// bridged Hall codes; a step in control has none of them. Cycles are those of the chip, with the
+/// wait states of its memory and without credit for prefetch and caches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Times<T> {
     /// Instructions of most steps in control.
@@ -63,6 +63,12 @@ impl Estimate {
     const fn of(weights: Work, error: f64) -> Self {
         Self { weights, error }
     }
+}
+
+/// The estimate of these operations by these weights.
+pub fn weighed(weights: &Work, work: &Work) -> f64 {
+    let parts = weights.iter().zip(work);
+    parts.map(|(weight, count)| weight * count).sum()
 }
 
 /// What an estimate weighs: one step, state words, additions with comparisons, products of more
@@ -141,12 +147,15 @@ impl StepTime {
         self.clock * self.period
     }
 
-    /// Whether a step may take longer than the control period on the core that is named, an
-    /// estimate with its error.
-    pub fn is_too_long(&self) -> bool {
+    /// Cycles of any step at most, an estimate with its error.
+    pub fn most_cycles(&self) -> f64 {
         let error = self.errors.map_or(0.0, |errors| errors.any_cycles);
-        let most = f64::from(self.times.any_cycles) * (1.0 + error);
-        self.is_named && most > self.cycles_of_period()
+        (f64::from(self.times.any_cycles) * (1.0 + error)).ceil()
+    }
+
+    /// Whether a step may take longer than the control period on the core that is named.
+    pub fn is_too_long(&self) -> bool {
+        self.is_named && self.most_cycles() > self.cycles_of_period()
     }
 
     /// Whether the figures are bounds: counted, and at no higher clock than the chip's, beyond which
@@ -228,13 +237,9 @@ impl Chip {
     }
 
     fn estimated(&self, work: &Times<Work>) -> Times<u32> {
-        self.estimates.zip(*work).map(|(estimate, work)| {
-            let parts = estimate.weights.iter().zip(work);
-            parts
-                .map(|(weight, count)| weight * count)
-                .sum::<f64>()
-                .round() as u32
-        })
+        self.estimates
+            .zip(*work)
+            .map(|(estimate, work)| weighed(&estimate.weights, &work).round() as u32)
     }
 }
 
@@ -268,7 +273,7 @@ pub fn digest(spec_toml: &str) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ir::{Interval, Output, ProgramBuilder, named};
+    use crate::ir::with_rare_product;
     use crate::spec::{apply_variant, check, parse_toml};
 
     const WEIGHTS: Work = [100.0, 10.0, 2.0, 7.0, 3.0, 5.0, 50.0];
@@ -286,28 +291,9 @@ mod tests {
         counted: &COUNTED,
     };
 
-    /// A step with a rare division.
-    fn program() -> Program {
-        let b = ProgramBuilder::new("Times", &[]);
-        b.stage("read", &[]);
-        let word = Interval::symmetric(1000);
-        let (x, y) = (b.input("x", word, ""), b.input("y", word, ""));
-        named! {
-            let sum = x + y;
-            let large = sum.is_above(0);
-        }
-        b.guarded_stage("shrink", large, true, &[]);
-        named! {
-            let product = y.mul_round(x, 4);
-        }
-        let [result] = b.join([("result", product, sum)]);
-        b.output(Output::Probe("result"), result);
-        b.finish()
-    }
-
     #[test]
     fn an_estimate_weighs_the_operations_of_its_path() {
-        let times = CHIP.estimated(&work(&program()));
+        let times = CHIP.estimated(&work(&with_rare_product()));
         let normal = 100 + 2 * 2;
         assert_eq!(times.normal, normal);
         assert_eq!([times.control, times.any_cycles], [normal + 7; 2]);

@@ -4,8 +4,8 @@ use crate::text::significant;
 use hexagen_codegen::timing::StepTime;
 use serde::Serialize;
 
-/// Time of a step on a chip, with every wait state of its memory. Any step: start-up, calibration
-/// and trips included.
+/// Time of a step on a chip, with every wait state of its memory. Any step: start-up, calibration,
+/// trips, braking of a fast rotor and bridged Hall codes included.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Time {
     /// Chip.

@@ -35,20 +35,19 @@ pub fn period_too_long(
     )
 }
 
-/// A step may take longer than the control period. `given` is the core as written; `cycles` of a step at
-/// most, an estimate's error (a part of it) not added; `clock` in hertz, stated or the chip's; `period`
-/// in seconds.
+/// A step may take longer than the control period. `given` is the core as written; `most`: cycles of a
+/// step at most; `estimate`: the cycles without the error, and the error as a part of them; `clock` in
+/// hertz, stated or the chip's; `period` in seconds.
 pub fn step_exceeds_period(
     at: &Location,
     given: &str,
-    (chip, cycles): (&str, u32),
+    (chip, most): (&str, f64),
     (clock, is_stated): (f64, bool),
     period: f64,
-    error: Option<f64>,
+    estimate: Option<(u32, f64)>,
 ) -> Diagnostic {
-    let most = (f64::from(cycles) * (1.0 + error.unwrap_or(0.0))).ceil();
-    let told = match error {
-        Some(error) => {
+    let told = match estimate {
+        Some((cycles, error)) => {
             let error = percent((100.0 * error).ceil() / 100.0);
             format!(
                 "{most} cycles on {chip} in Rust (estimated as {cycles}, with an error of up to {error})"

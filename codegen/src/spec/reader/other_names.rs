@@ -4,35 +4,44 @@
 use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
-const POLES: [&str; 4] = [
-    "pole_count",
-    "pole_number",
-    "number_of_poles",
-    "magnet_poles",
-];
-
-const SPEED_CONSTANT: [&str; 4] = ["velocity_constant", "kv", "k_v", "kv_rating"];
-
-const TORQUE_CONSTANT: [&str; 4] = ["kt", "k_t", "km", "k_m"];
-
-const EMF_CONSTANT: [&str; 7] = [
-    "emf_constant",
-    "bemf_constant",
-    "bemf",
-    "voltage_constant",
-    "generator_constant",
-    "ke",
-    "k_e",
-];
-
-/// Ratings as data sheets call them.
-const RATINGS: [(&str, &str); 6] = [
-    ("nominal_speed", "rated_speed"),
-    ("nominal_torque", "rated_torque"),
-    ("nominal_current", "rated_current"),
-    ("continuous_current", "rated_current"),
-    ("continuous_torque", "rated_torque"),
-    ("max_continuous_current", "rated_current"),
+/// Fields, and what data sheets call them.
+const NAMES: [(&str, &[&str]); 7] = [
+    (
+        "poles",
+        &[
+            "pole_count",
+            "pole_number",
+            "number_of_poles",
+            "magnet_poles",
+        ],
+    ),
+    (
+        "speed_constant",
+        &["velocity_constant", "kv", "k_v", "kv_rating"],
+    ),
+    ("torque_constant", &["kt", "k_t", "km", "k_m"]),
+    (
+        "back_emf",
+        &[
+            "emf_constant",
+            "bemf_constant",
+            "bemf",
+            "voltage_constant",
+            "generator_constant",
+            "ke",
+            "k_e",
+        ],
+    ),
+    ("rated_speed", &["nominal_speed"]),
+    ("rated_torque", &["nominal_torque", "continuous_torque"]),
+    (
+        "rated_current",
+        &[
+            "nominal_current",
+            "continuous_current",
+            "max_continuous_current",
+        ],
+    ),
 ];
 
 /// Words of data sheets and files for those that fields take.
@@ -54,19 +63,10 @@ pub(super) fn word(given: &str) -> Option<&'static str> {
 /// The field that takes what the name stands for.
 pub(super) fn meant(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();
-    let is_in = |names: &[&str]| names.contains(&name.as_str());
-    if is_in(&POLES) {
-        Some("poles")
-    } else if is_in(&SPEED_CONSTANT) {
-        Some("speed_constant")
-    } else if is_in(&TORQUE_CONSTANT) {
-        Some("torque_constant")
-    } else if is_in(&EMF_CONSTANT) {
-        Some("back_emf")
-    } else {
-        let rating = RATINGS.iter().find(|(other, _)| *other == name);
-        rating.map(|(_, meant)| *meant)
-    }
+    let row = NAMES
+        .iter()
+        .find(|(_, names)| names.contains(&name.as_str()));
+    row.map(|(field, _)| *field)
 }
 
 /// What to write in the field `meant` for the value of another one, a clause.

@@ -5,7 +5,7 @@ use super::longest::chip;
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_codegen::timing::{Times, Work, counted, digest, work};
+use hexagen_codegen::timing::{Times, Work, counted, digest, weighed, work};
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use std::collections::BTreeMap;
@@ -61,7 +61,7 @@ pub fn release(compiler: &str) -> String {
 pub fn rises(target: Target, compiler: &str, drives: &[Drive]) -> Vec<String> {
     let mut rises = vec![];
     for drive in drives {
-        let Some((of, known)) = counted(core(target), drive.calibration.digest) else {
+        let Some((of, known)) = counted(&core(target), drive.calibration.digest) else {
             rises.push(format!(
                 "{}: {}: the generator does not know its times",
                 target.name(),
@@ -146,6 +146,7 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
         .arg(&new)
         .status()?;
     if !formatted.success() {
+        fs::remove_file(&new)?;
         return Err(BenchError::Failed("rustfmt failed".to_owned()));
     }
     fs::rename(new, path)?;
@@ -153,12 +154,8 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
 }
 
 /// The target as a word of the option of controllers.
-fn core(target: Target) -> &'static str {
-    match target {
-        Target::CortexM4 => "cortex_m4",
-        Target::CortexM0 => "cortex_m0",
-        Target::Riscv32 => "riscv32",
-    }
+fn core(target: Target) -> String {
+    target.name().replace('-', "_")
 }
 
 fn name(target: Target) -> &'static str {
@@ -208,7 +205,7 @@ fn fit(points: &[(Work, f64)]) -> Result<Fit, BenchError> {
     for (left_out, (work, time)) in points.iter().enumerate() {
         let mut others = points.to_vec();
         others.remove(left_out);
-        let estimate = dot(&weights(&others)?, work);
+        let estimate = weighed(&weights(&others)?, work);
         error = error.max((time / estimate - 1.0).abs());
     }
     Ok(Fit {
@@ -239,14 +236,6 @@ fn weights(points: &[(Work, f64)]) -> Result<Work, BenchError> {
         }
         other => Err(BenchError::Failed(format!("fit of step times: {other:?}"))),
     }
-}
-
-fn dot(weights: &Work, work: &Work) -> f64 {
-    weights
-        .iter()
-        .zip(work)
-        .map(|(weight, work)| weight * work)
-        .sum()
 }
 
 #[cfg(test)]

@@ -38,8 +38,8 @@ struct Body {
     graph: DiGraphMap<Node, u32>,
     /// Length of a node, that of a called function included.
     weights: BTreeMap<Node, u32>,
-    /// With the length of the way back to the caller, through the functions at whose entry a path
-    /// goes on for good.
+    /// Where a path ends: at a return, with the length of the way to the caller, or at a tail call,
+    /// with that of what is called.
     returns: BTreeMap<Node, u32>,
 }
 
