@@ -175,6 +175,8 @@ codes! {
     WatchIsBlind = 613,
     /// A step may take longer than the control period.
     StepExceedsPeriod = 614,
+    /// Overshoot and ripple may reach the trip current without a fault.
+    TripNearSetPoint = 615,
     /// An internal error of the generator.
     Internal = 901,
 }

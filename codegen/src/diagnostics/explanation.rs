@@ -254,7 +254,7 @@ impl Code {
                 "Currents above the sensors' range cannot be controlled.",
                 "adc_range = \"15 A\"",
                 "adc_range = \"40 A\"",
-                "Widen the range, or lower rated_current.",
+                "Widen the range, or state a max_current that the sensors show with room to trip.",
             ),
             Self::TripAboveAdcRange => say(
                 "A current that no count shows cannot trip the drive.",
@@ -505,6 +505,12 @@ impl Code {
                 "f_pwm = \"20 kHz\"\nkind = \"pdcc\"\ntarget = \"cortex_m0\"",
                 "f_pwm = \"20 kHz\"\nkind = \"pdcc\"\ntarget = \"cortex_m4\"",
                 "State core_clock if your core is faster, lower f_pwm, raise pwm_per_control, or choose a controller with a shorter step: `hexagen advise` compares them. A core with a cache or a prefetch buffer may hold the period nevertheless: measure it.",
+            ),
+            Self::TripNearSetPoint => say(
+                "A step of the set-point overshoots by up to 5 %, the current ripples, and the zeros of the sensors drift. A trip level less than 15 % above the largest set-point's peak may be reached without a fault. By default it is twice the set-point, but at most what the current sensors show.",
+                "bus_voltage = \"48 V\"\nmax_current = \"36 A\"",
+                "bus_voltage = \"48 V\"\nmax_current = \"30 A\"",
+                "Lower max_current, or take sensors that reach farther: by adc_range, or by a smaller shunt or amplifier_gain.",
             ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",

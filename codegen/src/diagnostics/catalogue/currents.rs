@@ -9,6 +9,7 @@ use crate::diagnostics::{
 fn widen(range: &Part) -> String {
     match range.field {
         "shunt" => "take a smaller `shunt` or `amplifier_gain`".to_owned(),
+        "adc_gain" => "take sensors of a larger `adc_gain`".to_owned(),
         field => format!("widen `{field}`"),
     }
 }
@@ -17,23 +18,26 @@ fn widen(range: &Part) -> String {
 fn narrow(range: &Part) -> String {
     match range.field {
         "shunt" => "take a larger `shunt` or `amplifier_gain`".to_owned(),
+        "adc_gain" => "take sensors of a smaller `adc_gain`".to_owned(),
         field => format!("narrow `{field}`"),
     }
 }
 
-/// The current sensors do not reach the rated current; `range` in ampere.
-pub fn adc_range_too_small(range: &Part, rated: &Part, reach: f64) -> Diagnostic {
+/// The current sensors do not reach the rated current, which is the largest set-point by default; `reach`, and the
+/// largest set-point `most` that leaves room to trip: ampere.
+pub fn adc_range_too_small(range: &Part, rated: &Part, [reach, most]: [f64; 2]) -> Diagnostic {
     with_parts(
         Diagnostic::new(
             Code::AdcRangeTooSmall,
             &range.location,
             format!(
-                "`{}`: {} measures up to {}, below the rated current of {}; {} or lower `rated_current`",
+                "`{}`: {} measures up to {}, below the rated current of {}, which is the largest set-point unless `max_current` says otherwise; {}, or state a `max_current` of at most {}",
                 range.field,
                 range.given,
                 engineering(at_most(reach), "A"),
                 rated.given,
                 widen(range),
+                engineering(at_most(most), "A"),
             ),
         ),
         &[rated],
@@ -57,21 +61,77 @@ pub fn trip_above_adc_range(trip: &Part, range: &Part, reach: f64) -> Diagnostic
     )
 }
 
-/// The largest set-point reaches the trip current; `peak`: greatest phase current at that
-/// set-point, ampere.
-pub fn max_current_above_trip(max: &Part, trip: &Part, peak: f64) -> Diagnostic {
+/// The largest set-point and the trip level; currents in ampere.
+#[derive(Clone, Debug)]
+pub struct TripRoom {
+    /// Largest set-point.
+    pub max: Part,
+    /// Trip level.
+    pub level: Part,
+    /// What the current sensors' range follows from.
+    pub range: Part,
+    /// Greatest phase current at the largest set-point.
+    pub peak: f64,
+    /// Trip level.
+    pub trip: f64,
+    /// Least trip level that leaves room for overshoot and ripple.
+    pub needed: f64,
+    /// Greatest trip level that may be stated.
+    pub shown: f64,
+    /// Largest set-point that leaves room below the trip level as stated, or by default.
+    pub most: f64,
+}
+
+impl TripRoom {
+    /// The clause by which there is room: a higher level where the sensors show as much.
+    fn remedy(&self) -> String {
+        let most = engineering(at_most(self.most), "A");
+        if self.needed <= self.shown {
+            let needed = engineering(at_least(self.needed), "A");
+            format!("state a `trip_current` of {needed}, or lower `max_current` to {most}")
+        } else {
+            format!(
+                "the sensors show up to {}: lower `max_current` to {most}, or {}",
+                engineering(at_most(self.shown), "A"),
+                widen(&self.range)
+            )
+        }
+    }
+}
+
+/// The largest set-point reaches the trip current.
+pub fn max_current_above_trip(room: &TripRoom) -> Diagnostic {
     with_parts(
         Diagnostic::new(
             Code::MaxCurrentAboveTrip,
-            &max.location,
+            &room.max.location,
             format!(
-                "`max_current`: {} gives phase currents of up to {}, above the trip current of {}; lower it, or raise `trip_current`",
-                max.given,
-                engineering(at_least(peak), "A"),
-                trip.given,
+                "`max_current`: {} gives phase currents of up to {}, above the trip current of {}; {}",
+                room.max.given,
+                engineering(at_least(room.peak), "A"),
+                room.level.given,
+                room.remedy(),
             ),
         ),
-        &[trip],
+        &[&room.level, &room.range],
+    )
+}
+
+/// Between the largest set-point and the trip level is less room than overshoot and ripple take.
+pub fn trip_near_set_point(room: &TripRoom) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::TripNearSetPoint,
+            &room.max.location,
+            format!(
+                "`max_current`: {} gives phase currents of up to {}, and the drive trips at {}: overshoot and ripple may trip it without a fault; {}",
+                room.max.given,
+                engineering(at_least(room.peak), "A"),
+                room.level.given,
+                room.remedy(),
+            ),
+        ),
+        &[&room.level, &room.range],
     )
 }
 

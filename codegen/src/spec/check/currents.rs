@@ -2,10 +2,10 @@
 
 use super::inverter::{Adc, Inverter, usual_tolerance};
 use super::motor::Motor;
-use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, at_least, at_most, engineering};
-use crate::spec::health::{Drive, TRIP_BY_DEFAULT};
-use crate::spec::reader::Reader;
+use crate::diagnostics::catalogue::{self, Part, TripRoom};
+use crate::diagnostics::{Collector, Diagnostic, at_least, at_most, engineering};
+use crate::spec::health::{Drive, TRIP_AT_LEAST, TRIP_BY_DEFAULT};
+use crate::spec::reader::{Given, Reader};
 use crate::spec::{BusCurrents, ControllerSpec, EmfShape, Reference};
 
 /// Margin of the default trip level above the currents that whole vectors reach.
@@ -13,13 +13,6 @@ const ROOM: f64 = 1.05;
 
 /// Minimum of the largest set-point, ADC counts: half a count is 5 % of it.
 const LEAST_COUNTS: f64 = 10.0;
-
-/// The levels that are known without the controller's options, ampere.
-struct Levels {
-    /// Greatest current that the ADC can show.
-    shown: f64,
-    max: f64,
-}
 
 /// Trip current and largest set-point.
 pub(super) fn finish(
@@ -29,9 +22,10 @@ pub(super) fn finish(
     motor: &Motor,
     controller: Option<&ControllerSpec>,
     errors: &mut Collector,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Option<(f64, f64)> {
     let controller = controller?;
-    let levels = read(reader, inverter, adc, motor, controller, errors)?;
+    let rated = motor.rated_current.as_ref()?;
     let drive = Drive {
         controller,
         emf_shape: motor.emf_shape?,
@@ -39,65 +33,73 @@ pub(super) fn finish(
         inductance: motor.inductance?,
         v_bus: inverter.v_bus.as_ref()?.si,
         t_s: inverter.t_s?,
-        max_current: levels.max,
+        max_current: inverter.max_current.as_ref().map_or_else(
+            || default_max(motor, controller, rated.si),
+            |given| given.si,
+        ),
     };
-    let trip = inverter
-        .trip_current
-        .as_ref()
-        .map_or_else(|| default_trip(&drive, adc, levels.shown), |given| given.si);
-    check_health(
-        reader,
-        &drive,
-        motor.rated_current.as_ref()?.si,
+    if let Some(error) = beyond_sensors(reader, inverter, adc, &drive, rated) {
+        errors.push(error);
+        return None;
+    }
+    let given = inverter.trip_current.as_ref().map(|given| given.si);
+    let trip = given.unwrap_or_else(|| default_trip(&drive, adc));
+    let room = TripRoom {
+        max: reader.part("max_current", || engineering(drive.max_current, "A")),
+        level: reader.part("trip_current", || engineering(trip, "A")),
+        range: adc.part.clone(),
+        peak: drive.peak(),
         trip,
-        errors,
-    );
-    Some((whole_counts(trip, adc.gain, f64::floor), levels.max))
+        needed: TRIP_AT_LEAST * drive.peak(),
+        shown: shown(adc),
+        most: drive.largest_below(given.unwrap_or_else(|| usually_shown(adc))),
+    };
+    check_health(&drive, rated.si, &room, errors);
+    if (drive.peak()..room.needed * (1.0 - 1e-9)).contains(&trip) {
+        warnings.push(catalogue::trip_near_set_point(&room));
+    }
+    Some((whole_counts(trip, adc.gain, f64::floor), drive.max_current))
 }
 
-/// Checks the largest set-point and the ADC range against the rating and a stated trip level.
-fn read(
+/// A trip level or a largest set-point that the current sensors do not show, or show in a few counts.
+fn beyond_sensors(
     reader: &Reader,
     inverter: &Inverter,
     adc: &Adc,
-    motor: &Motor,
-    controller: &ControllerSpec,
-    errors: &mut Collector,
-) -> Option<Levels> {
-    let shown = adc.reach - adc.gain;
+    drive: &Drive,
+    rated: &Given,
+) -> Option<Diagnostic> {
+    let (shown, max) = (shown(adc), drive.max_current);
     if let Some(trip) = &inverter.trip_current
         && trip.si > shown * (1.0 + 1e-9)
     {
-        errors.push(catalogue::trip_above_adc_range(
+        return Some(catalogue::trip_above_adc_range(
             &trip.part, &adc.part, shown,
         ));
-        return None;
     }
-    let rated = motor.rated_current.as_ref()?;
-    if adc.reach < rated.si {
-        errors.push(catalogue::adc_range_too_small(
+    if inverter.max_current.is_none() && adc.reach < rated.si {
+        let most = drive.largest_below(usually_shown(adc));
+        return Some(catalogue::adc_range_too_small(
             &adc.part,
             &rated.part,
-            adc.reach,
+            [adc.reach, most],
         ));
-        return None;
     }
-    let max = inverter.max_current.as_ref().map_or_else(
-        || default_max(motor, controller, rated.si),
-        |given| given.si,
-    );
-    if max < LEAST_COUNTS * adc.gain * (1.0 - 1e-9) {
+    (max < LEAST_COUNTS * adc.gain * (1.0 - 1e-9)).then(|| {
         let part = reader.part("max_current", || engineering(max, "A"));
-        errors.push(catalogue::max_current_below_counts(
-            &part,
-            &adc.part,
-            max,
-            adc.gain,
-            LEAST_COUNTS,
-        ));
-        return None;
-    }
-    Some(Levels { shown, max })
+        catalogue::max_current_below_counts(&part, &adc.part, max, adc.gain, LEAST_COUNTS)
+    })
+}
+
+/// Greatest trip level that may be stated, ampere: a count less than the ADC shows.
+fn shown(adc: &Adc) -> f64 {
+    adc.reach - adc.gain
+}
+
+/// Greatest trip level by default, ampere: what a saturated ADC shows with the usual offset tolerance.
+fn usually_shown(adc: &Adc) -> f64 {
+    let counts = f64::from(1_u32 << adc.bits) / 2.0 - usual_tolerance(1 << adc.bits) - 1.0;
+    adc.reach.min(counts * adc.gain) - adc.gain
 }
 
 /// A current between some ADC counts, `least` ampere, and the trip level.
@@ -153,20 +155,18 @@ fn default_max(motor: &Motor, controller: &ControllerSpec, rated: f64) -> f64 {
     }
 }
 
-/// Twice the largest set-point, or more where whole vectors need it. At most what a saturated ADC
-/// shows with the usual offset tolerance, but not below what the drive reaches without a fault.
-fn default_trip(drive: &Drive, adc: &Adc, shown: f64) -> f64 {
+/// Twice the largest set-point, or more where whole vectors need it. At most what the ADC usually
+/// shows, but not below what the drive reaches without a fault.
+fn default_trip(drive: &Drive, adc: &Adc) -> f64 {
     let (peak, reach) = (drive.peak(), drive.reach());
     let vectors = if reach > peak {
         ROOM * reach.max(drive.swing())
     } else {
         0.0
     };
-    let converter = f64::from(1_u32 << adc.bits) / 2.0 - usual_tolerance(1 << adc.bits) - 1.0;
-    let ends = adc.reach.min(converter * adc.gain);
-    let most = (ends - adc.gain).max(reach.min(shown));
+    let most = usually_shown(adc).max(reach.min(shown(adc)));
     let trip = (TRIP_BY_DEFAULT * drive.max_current).max(vectors).min(most);
-    whole_counts(trip, adc.gain, f64::ceil).min(shown)
+    whole_counts(trip, adc.gain, f64::ceil).min(shown(adc))
 }
 
 /// A level rounded to whole ADC counts; binary rounding of a whole number is ignored.
@@ -182,19 +182,14 @@ fn whole_counts(current: f64, gain: f64, round: fn(f64) -> f64) -> f64 {
 
 /// Accepted: a trip level above what reference and vectors reach without a fault. A band or a
 /// vector that exceeds the `rated` current is an error of its own.
-fn check_health(reader: &Reader, drive: &Drive, rated: f64, trip: f64, errors: &mut Collector) {
-    let (peak, reach) = (drive.peak(), drive.reach());
-    let max_part = reader.part("max_current", || engineering(drive.max_current, "A"));
-    let trip_part = reader.part("trip_current", || engineering(trip, "A"));
-    if peak > trip * (1.0 + 1e-9) {
-        errors.push(catalogue::max_current_above_trip(
-            &max_part, &trip_part, peak,
-        ));
+fn check_health(drive: &Drive, rated: f64, room: &TripRoom, errors: &mut Collector) {
+    if room.peak > room.trip * (1.0 + 1e-9) {
+        errors.push(catalogue::max_current_above_trip(room));
     } else if drive.stride(1.0) < rated
-        && reach > trip * (1.0 + 1e-9)
+        && drive.reach() > room.trip * (1.0 + 1e-9)
         && let Some(error) = drive
             .controller
-            .refuse_trip(drive, rated, [&max_part, &trip_part])
+            .refuse_trip(drive, rated, [&room.max, &room.level])
     {
         errors.push(error);
     }

@@ -4,7 +4,7 @@ use super::inverter::{Adc, Inverter};
 use super::motor::Motor;
 use super::sensing::Sensing;
 use super::{currents, relations};
-use crate::diagnostics::{Collector, at_most, catalogue, engineering, rpm};
+use crate::diagnostics::{Collector, Diagnostic, at_most, catalogue, engineering, rpm};
 use crate::spec::model::periods;
 use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, CurrentSum, InverterSpec, RotorSensing, SensedPhases};
@@ -31,11 +31,13 @@ pub(super) fn inverter(
     capture: Option<RotorSensing>,
     controller: Option<&ControllerSpec>,
     errors: &mut Collector,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Option<InverterSpec> {
     let adc = inverter.adc.as_ref();
     let rated = motor.rated_current.as_ref();
-    let currents =
-        adc.and_then(|adc| currents::finish(reader, inverter, adc, motor, controller, errors));
+    let currents = adc.and_then(|adc| {
+        currents::finish(reader, inverter, adc, motor, controller, errors, warnings)
+    });
     let speeds = motor.rated_speed.as_ref().map(|rated| {
         let minimum = inverter.minimum_speed.as_ref().map_or_else(
             || minimum_speed(rated.si, relations::slowest(inverter, motor, capture)),

@@ -71,6 +71,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         capture,
         controller.as_ref(),
         &mut errors,
+        &mut warnings,
     );
 
     let origins = Origins::new(ast, &whole_inverter, warnings);

@@ -132,7 +132,14 @@ fn the_trip_level_follows_from_the_largest_set_point() {
         ("100 A", "", "pdcc", 40.0, &[][..]),
         ("400 A", "max_current = \"3.3 A\"\n", "pdcc", 6.6, &[]),
         ("40 A", "", "pdcc", 37.968_75, &[]),
-        ("40 A", "max_current = \"36 A\"\n", "pdcc", 38.79, &[]),
+        (
+            "40 A",
+            "max_current = \"36 A\"\n",
+            "pdcc",
+            38.79,
+            &[Code::TripNearSetPoint],
+        ),
+        ("40 A", "max_current = \"30 A\"\n", "pdcc", 37.968_75, &[]),
         (
             "100 A",
             "trip_current = \"66 A\"\n",
