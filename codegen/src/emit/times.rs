@@ -41,7 +41,7 @@ fn item(time: &StepTime) -> [String; 4] {
     let told = time.told();
     let errors = time
         .errors
-        .map(|errors| errors.map(|error| format!(" (+- {})", whole_percent(error))));
+        .map(|errors| errors.map(|error| format!(" (+- {} %)", (100.0 * error).ceil())));
     let [normal, control, control_cycles, any, any_cycles] = match errors {
         Some(errors) => errors.into_array(),
         None => Default::default(),
@@ -66,19 +66,16 @@ fn item(time: &StepTime) -> [String; 4] {
         format!("- {at}:"),
         format!("  - in most steps {} instructions{normal};", told.normal),
         format!(
-            "  - in control {most}{} instructions{control} and {} cycles{control_cycles}, {} of the period;",
+            "  - in control {most}{} instructions{control} and {} cycles{control_cycles}, {} % of the period;",
             told.control,
             told.control_cycles,
-            whole_percent(time.share()),
+            time.percent_of_period(told.control_cycles),
         ),
         format!(
-            "  - in any step {most}{} instructions{any} and {} cycles{any_cycles}.",
-            told.any, told.any_cycles,
+            "  - in any step {most}{} instructions{any} and {} cycles{any_cycles}, {} % of it.",
+            told.any,
+            told.any_cycles,
+            time.percent_of_period(told.any_cycles),
         ),
     ]
-}
-
-/// In whole percents, rounded up.
-fn whole_percent(part: f64) -> String {
-    format!("{:.0} %", (100.0 * part).ceil())
 }

@@ -11,6 +11,8 @@ pub enum Basis {
     Phase,
     /// Amplitude.
     Peak,
+    /// From the least to the greatest, twice the amplitude.
+    PeakToPeak,
     /// Root mean square.
     Rms,
     /// Mean over a sector of block commutation, between two terminals.
@@ -29,6 +31,7 @@ impl Basis {
             Self::LineToLine => "line_to_line",
             Self::Phase => "phase",
             Self::Peak => "peak",
+            Self::PeakToPeak => "peak_to_peak",
             Self::Rms => "rms",
             Self::BlockMean => "block_mean",
             Self::PerPeakAmpere => "per_peak_ampere",

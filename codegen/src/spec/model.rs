@@ -399,6 +399,23 @@ impl InverterSpec {
         }
     }
 
+    /// Lowest bus voltage at which the drive neither trips nor fades its torque, volt.
+    pub fn lowest_driving_bus(&self) -> f64 {
+        match self.bus {
+            BusSource::Fixed => self.v_bus,
+            BusSource::Measured {
+                gain,
+                min,
+                motoring,
+                ..
+            } => {
+                let [least, _] = self.bus_counts();
+                let fades = motoring.map_or(0.0, |fade| fade.full);
+                min.max(gain * f64::from(least)).max(fades)
+            }
+        }
+    }
+
     /// The longest period of whole timer counts within `limit`, second.
     pub fn period_within(&self, limit: f64) -> f64 {
         period_within(limit, self.t_s, self.timer_period)

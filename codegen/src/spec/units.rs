@@ -16,6 +16,7 @@ pub use quantities::Dimension;
 pub use table::{NAMES, Name};
 
 use super::basis::Basis;
+use crate::diagnostics::engineering;
 use quantities::{KNOWN, quantity};
 use reading::Product;
 pub(super) use reading::in_letters;
@@ -77,6 +78,17 @@ impl Unit {
     pub(super) fn readings(symbol: &str) -> Option<[(&'static str, &'static str); 2]> {
         let product = Product::parse(symbol, false)?;
         quantities::readings(&product.powers)
+    }
+
+    /// What `value` of a unit is of its inverse, if that is one of some quantities: 20 mA/count for 50 counts/A.
+    pub(super) fn of_inverse(value: f64, symbol: &str, dimensions: &[Dimension]) -> Option<String> {
+        let (inverse, _) = Self::parse(&format!("1/({symbol})"))?;
+        let (_, spellings) = KNOWN
+            .iter()
+            .find(|(known, _)| *known == inverse.dimension && dimensions.contains(known))?;
+        let known = Self::from_symbol(spellings.first()?)?;
+        let value = inverse.to_si(1.0 / value) / known.to_si(1.0);
+        Some(engineering(value, &known.symbol))
     }
 
     /// The known spelling of one of some quantities closest to an unknown one, if any is close: a

@@ -231,6 +231,14 @@ fn read_unit(
             &remedy,
         ));
     }
+    let inverse = digits
+        .parse()
+        .ok()
+        .and_then(|value| Unit::of_inverse(value, &written(unknown), field.dimensions()));
+    if let Some(inverse) = inverse {
+        let given = given(unknown);
+        return Err(catalogue::inverse_unit(at, field.name, &given, &inverse));
+    }
     let nearest = Unit::nearest(&symbol, field.dimensions());
     let examples = field.examples(&named(lexemes));
     Err(catalogue::unknown_unit(
@@ -317,6 +325,11 @@ const PHRASES: &[(&[&str], Basis)] = &[
     (&["phase"], Basis::Phase),
     (&["peak"], Basis::Peak),
     (&["pk"], Basis::Peak),
+    (&["peak", "to", "peak"], Basis::PeakToPeak),
+    (&["peak", "peak"], Basis::PeakToPeak),
+    (&["pk", "pk"], Basis::PeakToPeak),
+    (&["p", "p"], Basis::PeakToPeak),
+    (&["pp"], Basis::PeakToPeak),
     (&["amplitude"], Basis::Peak),
     (&["rms"], Basis::Rms),
     (&["block", "mean"], Basis::BlockMean),

@@ -175,9 +175,9 @@ impl StepTime {
         })
     }
 
-    /// Part of the control period that a step in control takes at most.
-    pub fn share(&self) -> f64 {
-        f64::from(self.times.control_cycles) / self.cycles_of_period()
+    /// Part of the control period that so many cycles take, in whole percents, rounded up.
+    pub fn percent_of_period(&self, cycles: u32) -> f64 {
+        (100.0 * f64::from(cycles) / self.cycles_of_period()).ceil()
     }
 }
 
@@ -320,7 +320,8 @@ mod tests {
             [7, 96, 1200, 2300, 2400]
         );
         assert_eq!(time(None).told().control_cycles, 1234);
-        assert!((time(None).share() - 1234.0 / 2400.0).abs() < 1e-12);
+        assert_eq!(time(None).percent_of_period(1201), 51.0);
+        assert_eq!(time(None).percent_of_period(1200), 50.0);
         let with = |any_cycles, errors| StepTime {
             times: Times {
                 any_cycles,

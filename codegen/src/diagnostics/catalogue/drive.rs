@@ -92,6 +92,11 @@ pub fn bus_too_low(
             )
         }
     };
+    let trace = if stated.field == "back_emf" && emf > LIKELY[1] / 2.0 * volts {
+        "; a peak-to-peak voltage of a trace is written `peak_to_peak`"
+    } else {
+        ""
+    };
     let culprit = if drop > LIKELY[0] * volts {
         resistance
     } else if emf > LIKELY[1] * volts {
@@ -108,7 +113,7 @@ pub fn bus_too_low(
             Code::BusTooLow,
             &culprit.location,
             format!(
-                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and 2 R I = {}; raise the bus to {}, {remedy}, or check the bases of `{}` ({}) and `resistance` ({})",
+                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and 2 R I = {}; raise the bus to {}, {remedy}, or check the bases of `{}` ({}) and `resistance` ({}){trace}",
                 culprit.field,
                 culprit.given,
                 current.quoted(),

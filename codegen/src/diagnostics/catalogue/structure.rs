@@ -1,5 +1,6 @@
 //! Texts about the structure of a specification: syntax, sections, fields, files.
 
+use super::part::Part;
 use crate::diagnostics::{Code, Diagnostic, Location, list};
 
 /// The macro call or the file does not parse; `what` is the parser's message.
@@ -126,6 +127,18 @@ pub fn missing_choice(
         format!(
             "`{section}` lacks the field `{name}`; add {}",
             choices.join(" or ")
+        ),
+    )
+}
+
+/// A value of one winding without the connection of the windings.
+pub fn missing_winding(value: &Part) -> Diagnostic {
+    Diagnostic::new(
+        Code::MissingField,
+        &value.location,
+        format!(
+            "`{}`: {} is of one winding, and `motor` lacks the field `winding`; add `winding: star` or `winding: delta`, or write `terminal` if it was measured between two terminals",
+            value.field, value.given,
         ),
     )
 }

@@ -83,6 +83,15 @@ pub fn unknown_unit(
     )
 }
 
+/// A value over which 1 is what the field takes; `inverse`: that value.
+pub fn inverse_unit(at: &Location, field: &str, given: &str, inverse: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::UnknownUnit,
+        at,
+        format!("`{field}`: {given} is the inverse of what it takes; give {inverse}"),
+    )
+}
+
 /// A unit that says one of two quantities; `readings`: a unit of each, and what it means.
 pub fn ambiguous_unit(
     at: &Location,
@@ -192,14 +201,24 @@ pub fn wrong_basis(
 }
 
 /// A word that the field does not take.
-pub fn unknown_word(at: &Location, field: &str, given: &str, known: &[&str]) -> Diagnostic {
+pub fn unknown_word(
+    at: &Location,
+    field: &str,
+    given: &str,
+    known: &[&str],
+    kin: Option<&str>,
+) -> Diagnostic {
+    let advice = kin.map_or_else(
+        || did_you_mean(given, known),
+        |kin| format!("; nothing is counted on it, the nearest is `{kin}`, with your `core_clock`"),
+    );
     Diagnostic::new(
         Code::UnknownWord,
         at,
         format!(
             "`{field}`: unknown word `{given}`; it takes {}{}",
             list(known, "or"),
-            did_you_mean(given, known)
+            advice
         ),
     )
 }

@@ -155,11 +155,11 @@ fn read_back_emf<'a>(
     shape: Option<EmfShape>,
     errors: &mut Collector,
 ) -> Option<Emf<'a>> {
-    let given = reader.quantity(errors, "back_emf")?;
+    let mut given = reader.quantity(errors, "back_emf")?;
     let has = |basis: Basis| given.basis.contains(&basis);
     let phase = has(Basis::Phase) || has(Basis::PerPhase);
     let line = has(Basis::LineToLine);
-    let amplitudes = [Basis::Peak, Basis::Rms, Basis::BlockMean];
+    let amplitudes = [Basis::Peak, Basis::PeakToPeak, Basis::Rms, Basis::BlockMean];
     let stated: Vec<Basis> = amplitudes.into_iter().filter(|&basis| has(basis)).collect();
     let of_torque = [Basis::PerPeakAmpere, Basis::PerRmsAmpere];
     if let Some(basis) = of_torque.into_iter().find(|&basis| has(basis)) {
@@ -218,6 +218,13 @@ fn read_back_emf<'a>(
     };
     let amplitude = match stated.first() {
         None if dimension != Dimension::EmfConstant => Some(Basis::Peak),
+        Some(Basis::PeakToPeak) => {
+            given.si *= match dimension {
+                Dimension::SpeedConstant => 2.0,
+                _ => 0.5,
+            };
+            Some(Basis::Peak)
+        }
         stated => stated.copied(),
     };
     let reading = match (between_lines, amplitude) {
@@ -277,7 +284,13 @@ fn push_forms(
     let forms: Vec<(String, String)> = [PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean]
         .into_iter()
         .filter(fits)
-        .map(|reading| (with_words(given, reading.words()), meaning(reading)))
+        .map(|reading| {
+            let mut words = reading.words().to_owned();
+            if given.basis.contains(&Basis::PeakToPeak) {
+                words = words.replace("peak", "peak_to_peak");
+            }
+            (with_words(given, &words), meaning(reading))
+        })
         .collect();
     let part = &given.part;
     errors.push(catalogue::missing_basis(
@@ -296,7 +309,7 @@ fn with_words(given: &Given, words: &str) -> String {
 
 /// A speed constant is over the peak between two terminals where nothing else is said.
 fn read_speed_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Emf<'a>> {
-    let given = reader.quantity(errors, "speed_constant")?;
+    let mut given = reader.quantity(errors, "speed_constant")?;
     let others: Vec<Basis> = given
         .basis
         .iter()
@@ -305,6 +318,10 @@ fn read_speed_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Optio
         .collect();
     let reading = match others[..] {
         [] | [Basis::Peak] => Reading::LinePeak,
+        [Basis::PeakToPeak] => {
+            given.si *= 2.0;
+            Reading::LinePeak
+        }
         [Basis::Rms] => Reading::LineRms,
         [Basis::BlockMean] => Reading::BlockMean,
         [.., last] => {

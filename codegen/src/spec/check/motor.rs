@@ -184,24 +184,26 @@ fn read_winding(reader: &Reader, errors: &mut Collector) -> Option<Winding> {
     if reader.field("winding").is_some() {
         return reader.word(errors, "winding", &words);
     }
-    let depends = ["resistance", "inductance", "back_emf"].map(|name| {
-        reader.field(name).is_some_and(|field| match &field.value {
-            Value::Number(number) => {
-                let is_linkage = number
-                    .unit
-                    .as_ref()
-                    .is_some_and(|unit| unit.dimension == Dimension::FluxLinkage);
-                let of_phase = [Basis::PerPhase, Basis::Phase];
-                is_linkage || of_phase.iter().any(|basis| number.basis.contains(basis))
-            }
-            _ => false,
-        })
-    });
-    if depends.contains(&true) {
+    let mut is_linkage = false;
+    let of_phase = ["resistance", "inductance", "back_emf"]
+        .into_iter()
+        .find(|name| {
+            let Some(Value::Number(number)) = reader.field(name).map(|field| &field.value) else {
+                return false;
+            };
+            let unit = number.unit.as_ref();
+            is_linkage |= unit.is_some_and(|unit| unit.dimension == Dimension::FluxLinkage);
+            let of_phase = [Basis::PerPhase, Basis::Phase];
+            of_phase.iter().any(|basis| number.basis.contains(basis))
+        });
+    if let Some(name) = of_phase {
+        errors.push(catalogue::missing_winding(&reader.part(name, String::new)));
+    } else if is_linkage {
         reader.require(errors, &["winding"]);
-        return None;
+    } else {
+        return Some(Winding::Star);
     }
-    Some(Winding::Star)
+    None
 }
 
 /// The voltage at which the no-load speed holds, of use with it alone.
@@ -227,6 +229,10 @@ fn read_rated_current<'a>(
     let given = reader.quantity(errors, "rated_current")?;
     match given.basis {
         [] | [Basis::Peak] => Some(given),
+        [Basis::PeakToPeak] => Some(Given {
+            si: 0.5 * given.si,
+            ..given
+        }),
         [Basis::Rms] => Some(Given {
             si: given.si * shape?.rated_peak(),
             ..given

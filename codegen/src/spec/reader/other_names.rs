@@ -54,6 +54,33 @@ const WORDS: [(&str, &str); 6] = [
     ("false", "off"),
 ];
 
+/// Cores without figures of their own, and the core whose code they run.
+const CORES: [(&str, &[&str]); 2] = [
+    (
+        "cortex_m0",
+        &["cortex_m0plus", "cortex_m0+", "cortex_m1", "cortex_m23"],
+    ),
+    (
+        "cortex_m4",
+        &[
+            "cortex_m3",
+            "cortex_m4f",
+            "cortex_m7",
+            "cortex_m33",
+            "cortex_m35p",
+            "cortex_m52",
+            "cortex_m55",
+            "cortex_m85",
+        ],
+    ),
+];
+
+/// The word nearest in meaning to one that has no meaning here.
+pub(super) fn kin(given: &str) -> Option<&'static str> {
+    let row = CORES.iter().find(|(_, others)| others.contains(&given))?;
+    Some(row.0)
+}
+
 /// The word that another one stands for.
 pub(super) fn word(given: &str) -> Option<&'static str> {
     let row = WORDS.iter().find(|(other, _)| *other == given)?;

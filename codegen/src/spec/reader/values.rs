@@ -317,6 +317,7 @@ impl<'a> Reader<'a> {
                 name,
                 &given,
                 &known,
+                other_names::kin(&plain).filter(|kin| known.contains(kin)),
             ));
         }
         found
@@ -357,7 +358,7 @@ impl<'a> Reader<'a> {
 fn refuse_basis(errors: &mut Collector, given: &Given, remedy: &str) -> bool {
     if let Some(basis) = given.basis.first() {
         // Without the word the number would be another quantity.
-        let is_other = matches!(basis, Basis::Rms | Basis::BlockMean);
+        let is_other = matches!(basis, Basis::Rms | Basis::PeakToPeak | Basis::BlockMean);
         let remedy = if is_other { "give the peak" } else { remedy };
         let (at, text) = (&given.part.location, &given.part.given);
         errors.push(catalogue::wrong_basis(

@@ -125,6 +125,9 @@ fn every_unit_of_an_emf_is_read_by_both_front_ends() {
         (2.0 * per_krpm, "V/(1000 min-1) terminal peak"),
         (2.0 * per_krpm, "V/krpm block_mean"),
         (2.0 * per_krpm, "V/krpm block-mean line-to-line"),
+        (4.0 * per_krpm, "V/krpm line-to-line peak-to-peak"),
+        (0.8 * per_krpm, "Vpp/200rpm line-to-line"),
+        (2.0 * per_krpm, "V/krpm phase p-p"),
         (per_krpm, "V/krpm phase peak"),
         (per_krpm, "V/krpm per-phase peak"),
         (per_krpm * trapezoid_rms, "Vrms/krpm phase"),
@@ -182,6 +185,11 @@ fn torque_and_speed_constants_state_the_emf() {
             ("torque_constant", per_rms * phase, "Nm/Arms"),
             ("speed_constant", 30.0 / PI / (line_peak * phase), "rpm/V"),
             ("speed_constant", 30.0 / PI / (line_peak * phase), "RPM/V"),
+            (
+                "speed_constant",
+                30.0 / PI / (2.0 * line_peak * phase),
+                "rpm/Vpp",
+            ),
             ("speed_constant", 30.0 / PI / (line_peak * phase), "min-1/V"),
             (
                 "speed_constant",

@@ -40,12 +40,11 @@ impl Product {
     }
 
     fn of_number(digits: &str) -> Option<Self> {
-        // Multiples are round numbers: `V/1000rpm`.
-        let is_round = digits.starts_with('1') && digits[1..].bytes().all(|digit| digit == b'0');
+        // Multiples are whole numbers: `V/1000rpm`, `V/200rpm` of a trace.
         let times: f64 = digits
             .parse()
             .ok()
-            .filter(|_| is_round && digits.len() <= 7)?;
+            .filter(|_| !digits.starts_with('0') && digits.len() <= 7)?;
         Some(Self {
             symbol: digits.to_owned(),
             times,
@@ -148,7 +147,7 @@ impl<'a> Reader<'a> {
         if let Some(digits) = self.take_while(|c| c.is_ascii_digit()) {
             let number = Product::of_number(digits)?;
             if self.next_is('/') || self.next_is(')') || self.rest.trim_start().is_empty() {
-                return Some(number);
+                return (digits == "1").then_some(number);
             }
             let factor = self.factor()?;
             let symbol = format!("{digits}{}", factor.symbol);
@@ -214,6 +213,8 @@ impl<'a> Reader<'a> {
             ("rms", Basis::Rms),
             ("RMS", Basis::Rms),
             ("peak", Basis::Peak),
+            ("pkpk", Basis::PeakToPeak),
+            ("pp", Basis::PeakToPeak),
             ("pk", Basis::Peak),
         ];
         bases.into_iter().find_map(|(ending, basis)| {

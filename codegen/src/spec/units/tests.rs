@@ -117,6 +117,8 @@ fn amplitudes_are_no_part_of_the_unit() {
         ("mVrms/rpm", "mV/rpm", Basis::Rms),
         ("Vpeak/1000rpm", "V/1000rpm", Basis::Peak),
         ("mNm/Arms", "mNm/A", Basis::Rms),
+        ("Vpp/200rpm", "V/200rpm", Basis::PeakToPeak),
+        ("Vpkpk", "V", Basis::PeakToPeak),
     ] {
         let (unit, found) = Unit::parse(symbol).unwrap_or_else(|| panic!("{symbol}"));
         assert_eq!((unit.symbol.as_str(), found), (kept, Some(basis)));
@@ -127,28 +129,8 @@ fn amplitudes_are_no_part_of_the_unit() {
 #[test]
 fn what_is_no_quantity_is_no_unit() {
     for symbol in [
-        "",
-        "W",
-        "pH",
-        "mm",
-        "furlong",
-        "V/rad/s",
-        "V/2000rpm",
-        "A/A",
-        "rms",
-        "ohm rms",
-        "Hrms",
-        "V/",
-        "(V",
-        "V)",
-        "oz",
-        "kg",
-        "nm",
-        "V--s",
-        "m2/m",
-        "V/01rpm",
-        "Vrms/Apk",
-        "g cm3",
+        "", "W", "pH", "mm", "furlong", "V/rad/s", "V/2000", "2/min", "A/A", "rms", "ohm rms",
+        "Hrms", "V/", "(V", "V)", "oz", "kg", "nm", "V--s", "m2/m", "V/01rpm", "Vrms/Apk", "g cm3",
     ] {
         assert!(Unit::parse(symbol).is_none(), "{symbol}");
     }

@@ -15,7 +15,7 @@ pub use arguments::{
 };
 pub use failure::Failure;
 pub use output::{
-    note, print_blocks, print_json, print_table, print_text, shortened, tell_warnings, warn,
+    note, print_blocks, print_json, print_table, print_text, tell_warnings, warn, wrapped,
     write_file,
 };
 pub use progress::{Bar, spinner};

@@ -28,13 +28,13 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
 /// Columns of a line that is meant to be read at a glance.
 const COLUMNS: usize = 100;
 
-/// A line of at most 100 columns; what is cut off is a mark.
-pub fn shortened(line: &str) -> String {
-    if line.chars().count() <= COLUMNS {
-        return line.to_owned();
-    }
-    let kept: String = line.chars().take(COLUMNS - 1).collect();
-    format!("{kept}\u{2026}")
+/// A line in lines of at most [`COLUMNS`], behind the title of the first; a word that is longer stays whole.
+pub fn wrapped(line: &str) -> String {
+    let options = textwrap::Options::new(COLUMNS)
+        .subsequent_indent("            ")
+        .break_words(false)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation);
+    textwrap::fill(line, options)
 }
 
 /// Prints lines to stderr, with colours on a terminal (unless `NO_COLOR` is set). There is no place

@@ -1,18 +1,21 @@
-//! `hexagen check`: whether and how well a drive will work, in fifteen lines and within a second.
+//! `hexagen check`: whether and how well a drive will work, in ten lines and within a second, with
+//! the options that rules chose and their reasons behind them.
 //!
-//! The drive is designed and verified as for generation, and runs on the simulated motor at two
-//! speeds from one start each; `report` compares, measures and plots.
+//! The drive is designed and verified as for generation, and runs on the simulated motor from one
+//! start each: slowly, at rated speed, and there at the least bus voltage where one is stated.
+//! `report` compares, measures and plots.
 
-use crate::cli::{DriveArguments, Failure, print_json, print_text, shortened, tell_warnings};
+mod text;
+
+use crate::cli::{DriveArguments, Failure, print_json, print_text, tell_warnings};
 use clap::Args;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{CurrentSensing, Reference, RotorSensing, Spec};
 use hexagen_codegen::timing::StepTime;
-use hexagen_lab::closed_loop::{Held, Trip};
+use hexagen_lab::closed_loop::Trip;
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::text::significant;
-use hexagen_lab::times::{Time, sentence};
+use hexagen_lab::times::Time;
 use serde::Serialize;
 
 /// Options of `check`.
@@ -36,6 +39,9 @@ const RIPPLE: f64 = 7.0;
 /// Least torque at rated speed of a drive that works, percent.
 const LEAST_TORQUE: f64 = 50.0;
 
+/// Torque that is held, percent.
+const HELD: f64 = 99.0;
+
 /// Fewest ADC counts of the rated current for a smooth current.
 const COUNTS: f64 = 200.0;
 
@@ -44,6 +50,8 @@ const COUNTS: f64 = 200.0;
 pub struct Point {
     /// Mechanical speed, rpm.
     pub rpm: f64,
+    /// Bus voltage, volt.
+    pub bus_v: f64,
     /// Mean torque over the demanded one, percent; none for a drive that trips.
     pub torque_pct: Option<f64>,
     /// Ripple of the torque, peak to peak in percent of its mean.
@@ -78,6 +86,12 @@ pub struct Checked {
     pub verdict: String,
     /// Demanded torque, Nm.
     pub torque_nm: f64,
+    /// Peak of a phase current at that torque, ampere.
+    pub peak_a: f64,
+    /// Torque of `max_current`, Nm.
+    pub greatest_torque_nm: f64,
+    /// Speed up to which the bus drives its whole current, rpm; none where it does not at standstill.
+    pub greatest_torque_rpm: Option<f64>,
     /// Greatest voltage between two legs that the demanded torque takes at rated speed, volt.
     pub rating_v: f64,
     /// Speed up to which the bus drives the whole current of the demanded torque, rpm.
@@ -92,7 +106,7 @@ pub struct Checked {
     pub return_current_limit_a: Option<f64>,
     /// Options that nobody stated, with the value that a rule chose; not those of any number.
     pub chosen: Vec<Chosen>,
-    /// Runs, slow and at rated speed.
+    /// Runs: slow, at rated speed, and there at the least bus voltage where `bus_min` is stated.
     pub points: Vec<Point>,
     /// Time of a step, by chip.
     pub step: Vec<Time>,
@@ -117,7 +131,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_json(&checked)?;
     } else {
         tell_warnings(&drive);
-        print_text(&checked.lines(&drive, &next(asked)).join("\n"))?;
+        print_text(&text::lines(&checked, &drive, &next(asked)).join("\n"))?;
     }
     if checked.works {
         Ok(())
@@ -140,15 +154,18 @@ fn next(asked: &DriveArguments) -> String {
 impl Checked {
     fn of(drive: &Prepared) -> Result<Self, Failure> {
         let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
-        let points = SPEEDS
-            .iter()
-            .map(|share| at_speed(drive, share * motor.rated_speed))
-            .collect::<Result<Vec<_>, Failure>>()?;
+        let [slow, rated] = SPEEDS.map(|share| share * motor.rated_speed);
+        let mut points = vec![
+            at_speed(drive, slow, inverter.v_bus)?,
+            at_speed(drive, rated, inverter.v_bus)?,
+        ];
+        if let Some(least) = drive.least_bus {
+            points.push(at_speed(drive, rated, least)?);
+        }
         let envelope = Envelope::of(&drive.spec);
-        let torque = drive.demand();
+        let (torque, greatest) = (drive.demand(), drive.reach());
         let set_point = torque / envelope.torque_constant();
-        let taken = envelope.bus_voltage(motor.rated_speed, set_point);
-        let lasts = envelope.speed(torque).unwrap_or(0.0);
+        let rpm = |omega_m: f64| omega_m * 30.0 / std::f64::consts::PI;
         let times = &drive.generated.interface.times;
         let mut checked = Self {
             motor: drive.motor.clone(),
@@ -156,20 +173,17 @@ impl Checked {
             works: true,
             verdict: String::new(),
             torque_nm: torque,
-            rating_v: taken * envelope.reach,
-            envelope_rpm: lasts * 30.0 / std::f64::consts::PI,
+            peak_a: set_point * envelope.emf_shape.current_peak(envelope.reference),
+            greatest_torque_nm: greatest,
+            greatest_torque_rpm: envelope.speed(greatest).map(rpm),
+            rating_v: envelope.bus_voltage(motor.rated_speed, set_point) * envelope.reach,
+            envelope_rpm: rpm(envelope.speed(torque).unwrap_or(0.0)),
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
             return_current_limit_a: inverter.bus_currents.returned,
             chosen: chosen(drive),
             points,
-            step: drive
-                .generated
-                .interface
-                .times
-                .iter()
-                .map(Time::from)
-                .collect(),
+            step: times.iter().map(Time::from).collect(),
             overruns: times.iter().any(StepTime::is_too_long),
             warnings: drive.warnings.clone(),
         };
@@ -182,14 +196,10 @@ impl Checked {
         if let Some(trip) = self.points.iter().find_map(|point| point.tripped) {
             return (false, format!("does not work: {trip}"));
         }
-        let lost = |point: &Point| {
-            let torque = point.torque_pct.unwrap_or(0.0);
-            Held::AtLeast.lost(torque, 100.0).is_some()
-        };
-        let [slow, rated] = self.points.as_slice() else {
+        let [slow, rated, lowest @ ..] = self.points.as_slice() else {
             return (false, "does not work: it was not run".to_owned());
         };
-        if lost(slow) {
+        if !slow.is_held() {
             let left = self.left(slow);
             return (
                 false,
@@ -201,9 +211,16 @@ impl Checked {
             return (false, format!("does not work: {left}"));
         }
         let mut buts = Vec::new();
-        if lost(rated) {
+        if !rated.is_held() {
             buts.push(left);
         }
+        buts.extend(lowest.iter().filter(|point| !point.is_held()).map(|point| {
+            format!(
+                "on a bus of {} {} % of the torque is left there",
+                engineering(point.bus_v, "V"),
+                significant(point.torque_pct, 3)
+            )
+        }));
         buts.extend(self.rippling());
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
@@ -223,12 +240,10 @@ impl Checked {
         (true, verdict)
     }
 
-    /// The greatest ripple, if it is worth a word.
+    /// The greatest ripple on the nominal bus, if it is worth a word.
     fn rippling(&self) -> Option<String> {
-        let ripples = self
-            .points
-            .iter()
-            .filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
+        let nominal = self.points.iter().take(SPEEDS.len());
+        let ripples = nominal.filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
         let (rpm, ripple) = ripples.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
         let text = format!(
             "the torque ripples by {} % at {rpm:.0} rpm",
@@ -250,104 +265,11 @@ impl Checked {
         };
         format!("{what} {torque} % of the torque")
     }
+}
 
-    /// At most fifteen lines of at most 100 columns.
-    fn lines(&self, drive: &Prepared, next: &str) -> Vec<String> {
-        let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
-        let common = drive.spec.controller.common();
-        let current = match common.reference {
-            Reference::Proportional => "proportional",
-            Reference::QuasiSquare => "quasi-square",
-        };
-        let edges = match inverter.rotor_sensing {
-            RotorSensing::SampledHalls => "edges seen at samples (a timer is finer)",
-            RotorSensing::TimedHalls { .. } => "edges by a capture timer",
-            RotorSensing::Angle(_) => "an angle sensor",
-        };
-        let mut lines = vec![
-            format!("{}: {}", self.motor, self.verdict),
-            format!(
-                "motor       {} pole pairs, {}, {} per phase; {}, {}",
-                motor.pole_pairs,
-                engineering(motor.resistance, "ohm"),
-                engineering(motor.inductance, "H"),
-                engineering(motor.rated_torque_constant(), "Nm/A"),
-                motor
-                    .inertia
-                    .map_or("inertia unknown".to_owned(), |inertia| format!(
-                        "{} kg m2",
-                        significant(inertia, 3)
-                    )),
-            ),
-            format!(
-                "controller  {}, {}-bit words, {current} current, {edges}",
-                self.controller, common.word
-            ),
-            format!(
-                "sensing     {}, {} bits to {}: {} a count, {} at rating; trip {}",
-                match inverter.current_sensing {
-                    CurrentSensing::InPhase => "in the phases",
-                    CurrentSensing::LowSide(_) => "in the low legs",
-                },
-                inverter.adc_bits,
-                engineering(inverter.shown_current(), "A"),
-                engineering(inverter.adc_gain.abs(), "A"),
-                significant(self.rated_counts, 3),
-                engineering(inverter.trip_current, "A"),
-            ),
-            format!(
-                "bus         the rating takes {}{} of {}; whole current to {:.0} rpm",
-                engineering(self.rating_v, "V"),
-                reached(&drive.spec),
-                engineering(inverter.v_bus, "V"),
-                self.envelope_rpm,
-            ),
-        ];
-        lines.extend(self.limits_of_bus());
-        let times = &drive.generated.interface.times;
-        lines.push(format!("step        {}", sentence(times)));
-        let mut heading = "by rule";
-        for Chosen {
-            option,
-            value,
-            reason,
-        } in &self.chosen
-        {
-            lines.push(format!("{heading:<12}{option} {value}: {reason}"));
-            heading = "";
-        }
-        lines.extend(self.points.iter().map(|point| self.line(point)));
-        lines.push(format!("next        {next}"));
-        lines.iter().map(|line| shortened(line)).collect()
-    }
-
-    /// The limits of the bus current, where there are any.
-    fn limits_of_bus(&self) -> Option<String> {
-        let limits = [
-            (self.bus_current_limit_a, "drawn from the bus"),
-            (self.return_current_limit_a, "returned to it"),
-        ];
-        let limits = limits.into_iter().filter_map(|(most, way)| {
-            let most = engineering(most?, "A");
-            Some(format!("{most} {way}"))
-        });
-        let limits: Vec<String> = limits.collect();
-        (!limits.is_empty()).then(|| format!("limits      at most {}", limits.join(", ")))
-    }
-
-    fn line(&self, point: &Point) -> String {
-        let head = format!("{:>6.0} rpm ", point.rpm);
-        let demand = engineering(self.torque_nm, "Nm");
-        match (point.torque_pct, point.tripped) {
-            (_, Some(trip)) => format!("{head} trips: {trip}"),
-            (Some(torque), None) => format!(
-                "{head} {} % of {demand}, ripple {} % peak to peak, switches at {} kHz",
-                significant(torque, 3),
-                significant(point.ripple_pp_pct, 2),
-                significant(point.switching_hz.map(|hertz| 1e-3 * hertz), 3),
-            ),
-            (None, None) => format!("{head} no torque"),
-        }
+impl Point {
+    fn is_held(&self) -> bool {
+        self.torque_pct.is_some_and(|torque| torque >= HELD)
     }
 }
 
@@ -363,24 +285,15 @@ fn chosen(drive: &Prepared) -> Vec<Chosen> {
     chosen.flatten().collect()
 }
 
-/// What the legs reach of the bus, where they must be low for a while.
-fn reached(spec: &Spec) -> String {
-    let share = spec.reach_share();
-    if share >= 1.0 {
-        return String::new();
-    }
-    let reach = engineering(spec.inverter.v_bus * share, "V");
-    format!("; legs reach {reach}")
-}
-
-/// The fixed-point program at a speed, in rad/s, with the demanded torque.
-fn at_speed(drive: &Prepared, omega_m: f64) -> Result<Point, Failure> {
+/// The fixed-point program at a speed in rad/s and a bus voltage, with the demanded torque.
+fn at_speed(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, Failure> {
     let demand = drive.demand();
-    let measured = drive.measure_once(omega_m, demand)?;
+    let measured = drive.measure_on_bus(omega_m, demand, bus_v)?;
     let figures = measured.figures;
     let torque_pct = figures.mean_torque_nm.map(|torque| 100.0 * torque / demand);
     Ok(Point {
         rpm: omega_m * 30.0 / std::f64::consts::PI,
+        bus_v,
         torque_pct: torque_pct.filter(|_| measured.tripped.is_none()),
         ripple_pp_pct: figures.ripple_pp_pct,
         switching_hz: figures.switching_hz,

@@ -5,7 +5,7 @@ use super::{
     reach_of, run_of,
 };
 use crate::closed_loop::{Measurement, RunOptions, STARTS, measure};
-use crate::plant::{PlantError, Truth};
+use crate::plant::{PlantError, PlantParams, Truth};
 use crate::{Interpreted, formats, state_names};
 use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
@@ -28,6 +28,8 @@ pub struct Prepared {
     pub variant: String,
     /// The checked specification.
     pub spec: Spec,
+    /// Lowest bus voltage of the whole torque, volt, where `bus_min` is stated.
+    pub least_bus: Option<f64>,
     /// The generated program.
     pub generated: Generated,
     /// The generator's warnings.
@@ -90,6 +92,8 @@ pub fn prepare_ast(
         motor: motor.to_owned(),
         variant: variant_of(&ast),
         built_in: built_in(&generated.interface.spec_toml),
+        least_bus: (origins.is_given("inverter.bus_min"))
+            .then(|| spec.inverter.lowest_driving_bus()),
         spec,
         generated,
         warnings: warnings.iter().map(ToString::to_string).collect(),
@@ -253,12 +257,32 @@ impl Prepared {
     /// # Errors
     /// A plant parameter out of range.
     pub fn measure_once(&self, omega_m: f64, torque: f64) -> Result<Measurement, PlantError> {
+        self.measure_on_bus(omega_m, torque, self.spec.inverter.v_bus)
+    }
+
+    /// The same with another true bus voltage.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn measure_on_bus(
+        &self,
+        omega_m: f64,
+        torque: f64,
+        v_bus: f64,
+    ) -> Result<Measurement, PlantError> {
         let run = RunOptions {
             starts: vec![STARTS[0]],
             ..run_of(&self.spec, omega_m, torque)
         };
-        let maker = self.maker(Model::Fixed, self.set_point(torque));
-        measure(&plant_of(&self.spec), &run, maker)
+        let set_point = SetPoint {
+            v_bus,
+            ..self.set_point(torque)
+        };
+        let plant = PlantParams {
+            v_bus,
+            ..plant_of(&self.spec)
+        };
+        measure(&plant, &run, self.maker(Model::Fixed, set_point))
     }
 
     /// Operations on the longest path of a step's law.
