@@ -15,8 +15,21 @@ pub struct BoardWithMotors {
     pub description: Option<String>,
     /// Where its numbers come from.
     pub source: Option<String>,
+    /// What it states of the inverter.
+    pub fields: Vec<BoardField>,
     /// Every motor of the library on it.
     pub motors: Vec<Fit>,
+}
+
+/// A field of a board.
+#[derive(Clone, Debug, Serialize)]
+pub struct BoardField {
+    /// Its name.
+    pub field: String,
+    /// Its value as written.
+    pub value: String,
+    /// Where it comes from, or why it was assumed.
+    pub source: Option<String>,
 }
 
 /// A motor on a board.
@@ -53,11 +66,22 @@ pub fn board_with_motors(given: &str) -> Result<BoardWithMotors, LabError> {
     let board = motors.first().and_then(|motor| motor.ast.board.as_ref());
     let file = board.and_then(|board| board.file.clone());
     let file = file.unwrap_or_default();
-    let mut source = file.source.into_iter();
+    let source_of = |name: &str| {
+        let mut sources = file.source.iter();
+        Some(sources.find(|(key, _)| key == name)?.1.clone())
+    };
+    let fields = file.inverter.fields.iter().map(|field| BoardField {
+        field: field.name.clone(),
+        value: field.value.to_string(),
+        source: (field.assumed.clone())
+            .map(|why| format!("assumed: {why}"))
+            .or_else(|| source_of(&field.name)),
+    });
     Ok(BoardWithMotors {
         name: given.to_owned(),
         description: file.description,
-        source: source.find(|(key, _)| key == "text").map(|(_, text)| text),
+        source: source_of("text"),
+        fields: fields.collect(),
         motors: motors.iter().map(fit).collect(),
     })
 }

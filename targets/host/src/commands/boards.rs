@@ -1,16 +1,16 @@
-//! `hexagen boards`: the library of boards, which motors of the library fit each, and why the others
-//! do not.
+//! `hexagen boards`: the library of boards, what each states, which motors of the library fit it, and why
+//! the others do not.
 
 use crate::cli::{Bar, Failure, print_json, print_table, print_text};
 use clap::Args;
-use hexagen_lab::boards::{BoardWithMotors, Fit, board_with_motors, library_of_boards};
+use hexagen_lab::boards::{BoardField, BoardWithMotors, Fit, board_with_motors, library_of_boards};
 use hexagen_lab::report::Table;
 use serde::Serialize;
 
 /// Options of `boards`.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Options {
-    /// A board, a name of the library or a file: why the other motors do not fit it
+    /// A board, a name of the library or a file: its fields, and why the other motors do not fit it
     #[arg(value_name = "BOARD")]
     pub board: Option<String>,
     /// Print one JSON object
@@ -36,7 +36,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     print_table(&table(&boards))?;
     if options.board.is_none() {
-        return print_text("`hexagen boards BOARD` says why the other motors do not fit a board.");
+        return print_text(
+            "`hexagen boards BOARD` lists a board's fields, and says why the other motors do not fit it.",
+        );
+    }
+    for board in &boards {
+        print_table(&table_of_fields(board))?;
     }
     let motors = boards.iter().flat_map(|board| &board.motors);
     for Fit { motor, reason, .. } in motors {
@@ -57,6 +62,23 @@ fn table(boards: &[BoardWithMotors]) -> Table {
             board.name.clone(),
             board.description.clone().unwrap_or_default(),
             fitting.join(", "),
+        ]);
+    }
+    table
+}
+
+fn table_of_fields(board: &BoardWithMotors) -> Table {
+    let mut table = Table::listed(["field", "value", "from"], []);
+    for BoardField {
+        field,
+        value,
+        source,
+    } in &board.fields
+    {
+        table.row([
+            field.clone(),
+            value.clone(),
+            source.clone().unwrap_or_default(),
         ]);
     }
     table

@@ -121,8 +121,8 @@ fn given(arguments: &[String]) -> Result<Values, Failure> {
 
 /// A file in the making.
 struct Draft {
-    /// The name of a board or of its file, and the fields that it states.
-    board: Option<(String, Vec<String>)>,
+    /// The name of a board or of its file, and the fields that it states with their values.
+    board: Option<(String, Values)>,
     values: Values,
 }
 
@@ -148,7 +148,9 @@ impl Draft {
         board.read(Path::new(""), folder)?;
         let fields = board.file.map(|file| {
             let fields = file.inverter.fields.into_iter();
-            fields.map(|field| field.name).collect()
+            fields
+                .map(|field| (field.name, field.value.to_string()))
+                .collect()
         });
         self.board = Some((name.to_owned(), fields.unwrap_or_default()));
         Ok(())
@@ -164,8 +166,8 @@ impl Draft {
             })
         };
         lines.iter().filter(move |line| {
-            let is_of_board = |(_, fields): &(String, Vec<String>)| {
-                let states = |name: &&str| fields.iter().any(|field| field == name);
+            let is_of_board = |(_, fields): &(String, Values)| {
+                let states = |name: &&str| fields.iter().any(|(field, _)| field == name);
                 line.fields.iter().any(states)
             };
             let is_stated = self.board.as_ref().is_some_and(is_of_board);
@@ -275,12 +277,15 @@ impl Draft {
         if let Some((board, _)) = &self.board {
             let _ = write!(
                 text,
-                "\n# Its fields stand in place of those that [inverter] lacks; `hexagen boards` lists the library.\n{}\n",
+                "\n# It states every field that [inverter] lacks; `hexagen boards` lists the library.\n{}\n",
                 entry(BOARD, board)
             );
         }
         for (section, lines) in SECTIONS {
             let _ = write!(text, "\n[{section}]\n");
+            if section == "inverter" {
+                text.push_str(&self.fields_of_board());
+            }
             for line in self.lines(lines) {
                 let _ = writeln!(text, "# {}", line.about);
                 let given = self.values_of(line).map(|(name, value)| entry(name, value));
@@ -307,6 +312,20 @@ impl Draft {
             }
         }
         text
+    }
+}
+
+impl Draft {
+    /// What the board states, but for what stands in the file itself, as comments.
+    fn fields_of_board(&self) -> String {
+        let Some((board, fields)) = &self.board else {
+            return String::new();
+        };
+        let is_own = |name: &String| self.values.iter().any(|(own, _)| own == name);
+        let stated = fields.iter().filter(|(name, _)| !is_own(name));
+        let entries = stated.map(|(name, value)| format!("# {}\n", entry(name, value)));
+        let entries: String = entries.collect();
+        format!("# {board} states these; a line of your own stands over its line.\n{entries}\n")
     }
 }
 

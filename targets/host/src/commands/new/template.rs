@@ -167,7 +167,8 @@ const INVERTER: &[Line] = &[
     .only_with("shunt", ""),
     needed(
         &["current_sensing"],
-        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches).",
+        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches;\n\
+         # then also settling_time, aperture_time, conversion_time and sensed_phases).",
         "in_phase",
     ),
     needed(
@@ -195,6 +196,14 @@ const INVERTER: &[Line] = &[
     )
     .only_with("current_sensing", "low_side")
     .or("ab"),
+    needed(
+        &["v_bus"],
+        "fixed, or measured: the firmware passes the bus voltage; then also bus_adc_bits and bus_adc_range,\n\
+         # and bus_min and bus_max, such as those of a battery.",
+        "fixed",
+    )
+    .optional(),
+    needed(&["max_current"], "Largest set-point; rated_current by default.", "25 A").optional(),
     needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
     needed(
         &["hall_timer_clock"],
@@ -204,12 +213,21 @@ const INVERTER: &[Line] = &[
     .optional(),
 ];
 
-const CONTROLLER: &[Line] = &[needed(
-    &["kind"],
-    "pdcc, pi-pwm, fcs-mpc, phcc or p-pwm; `hexagen --help` lists their options.",
-    "pdcc",
-)
-.or("pdcc")];
+const CONTROLLER: &[Line] = &[
+    needed(
+        &["kind"],
+        "pdcc, pi-pwm, fcs-mpc, phcc or p-pwm; `hexagen --help` lists their options.",
+        "pdcc",
+    )
+    .or("pdcc"),
+    needed(
+        &["target"],
+        "The core: cortex_m4 (as M3, M7 and M33), cortex_m0 or riscv32; whether a step fits is then checked.",
+        "cortex_m4",
+    )
+    .optional(),
+    needed(&["core_clock"], "Its clock, with target.", "72 MHz").optional(),
+];
 
 /// The sections with their lines.
 pub const SECTIONS: [(&str, &[Line]); 3] = [
