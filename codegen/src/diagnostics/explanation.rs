@@ -227,7 +227,7 @@ impl Code {
                 "Raise the PWM frequency, or check R and L and their bases.",
             ),
             Self::BusTooLow => say(
-                "The line-to-line EMF at rated speed exceeds the bus, or together with what rated current drops in two phases exceeds it by more than a quarter: the motor cannot turn so fast on it, and probably a value is wrong.",
+                "The line-to-line EMF at rated speed is more than the bus, or with the voltage drop of rated current in two phases more than 125 % of it: the motor cannot turn so fast on it, and probably a value is wrong.",
                 "rated_speed = \"5000 rpm\"",
                 "rated_speed = \"2000 rpm\"",
                 "Data sheets often print the no-load speed as speed: write it as `no_load_speed`, and the speed under load as `rated_speed`; else check the bases of EMF and resistance.",

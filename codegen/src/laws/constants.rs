@@ -89,7 +89,7 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             "START_SPEED_RPM",
             "u32",
             start_rpm,
-            "Greatest rotor speed at which control may begin without a trip, rpm, at a bus within its limits and set-point 0. Behind a start this holds for any set-point, with a trip level of at least 1.5 times `I_MAX`. (Pre-charge shorts the windings.)",
+            "Greatest rotor speed at which control may begin without a trip, rpm, at a bus within its limits and set-point 0. After a start it holds for any set-point, with a trip level of at least 1.5 times `I_MAX`. (Pre-charge shorts the windings.)",
         ),
     ]);
     list

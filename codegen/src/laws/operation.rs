@@ -205,14 +205,14 @@ fn trips(spec: &Spec) -> Vec<String> {
     )];
     if let Some(periods) = spec.controller.common().residual_periods {
         lines.push(format!(
-            "So do {periods} periods more with currents that do not follow the voltages than with ones that do."
+            "It also trips when periods in which the currents do not follow the voltages outnumber the others by {periods}."
         ));
         let allowance = Allowance::of(spec);
         let rated = spec.motor.rated_speed * f64::from(spec.motor.pole_pairs);
         let [still, turning] = [0.0, rated]
             .map(|omega_e| engineering(allowance.at(inverter.max_current, omega_e), "V"));
         lines.push(format!(
-            "They may be off by {still} at standstill and by {turning} at rated speed, with `max_current`: a fault of less is not seen."
+            "They may be off by {still} at standstill and by {turning} at rated speed, with `max_current`: a smaller fault is not seen."
         ));
     }
     lines.push(match inverter.stall_periods {
@@ -223,7 +223,7 @@ fn trips(spec: &Spec) -> Vec<String> {
             } else {
                 "without a Hall edge"
             };
-            format!("So do {periods} periods {edge} while the set-point is not 0.")
+            format!("It also trips after {periods} periods {edge} while the set-point is not 0.")
         }
     });
     lines.extend(over_speed(spec));
@@ -251,13 +251,13 @@ fn over_speed(spec: &Spec) -> Option<String> {
         RotorSensing::TimedHalls { .. } => String::new(),
         RotorSensing::Angle(_) => {
             return Some(format!(
-                "So do {OVER_SPEED_EDGES} periods in a row at more than {}.",
+                "It also trips after {OVER_SPEED_EDGES} periods in a row at more than {}.",
                 rpm(speed)
             ));
         }
     };
     Some(format!(
-        "So do {OVER_SPEED_EDGES} Hall edges in a row at which the last electrical turn was faster than {}{unsure}.",
+        "It also trips after {OVER_SPEED_EDGES} Hall edges in a row at which the last electrical turn was faster than {}{unsure}.",
         rpm(speed)
     ))
 }

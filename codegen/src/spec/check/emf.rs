@@ -109,7 +109,7 @@ pub(super) fn read<'a>(
     let is_alone = FIELDS[..2].iter().all(|name| reader.field(name).is_none());
     let all = [
         read_back_emf(reader, winding, shape, errors),
-        read_speed_constant(reader, errors),
+        read_speed_constant(reader, shape, errors),
         read_torque_constant(reader, is_alone, shape, errors),
     ];
     // Where the first is in error the others must not take its place.
@@ -216,6 +216,10 @@ fn read_back_emf<'a>(
         _ if phase => winding.map(|winding| winding == Winding::Delta),
         _ => line.then_some(true),
     };
+    if dimension == Dimension::SpeedConstant && stated.is_empty() && is_open(reader, shape) {
+        push_forms(&given, [false, true], None, shape, errors);
+        return None;
+    }
     let amplitude = match stated.first() {
         None if dimension != Dimension::EmfConstant => Some(Basis::Peak),
         Some(Basis::PeakToPeak) => {
@@ -276,7 +280,11 @@ fn push_forms(
         shape.map_or_else(
             || what.to_owned(),
             |shape| {
-                let torque = given.si / reading.factor(shape) * shape.quasi_square_factor();
+                let constant = match given.dimension {
+                    Some(Dimension::SpeedConstant) => 1.0 / given.si,
+                    _ => given.si,
+                };
+                let torque = constant / reading.factor(shape) * shape.quasi_square_factor();
                 format!("{what}: {}", engineering(torque, "Nm/A"))
             },
         )
@@ -307,8 +315,24 @@ fn with_words(given: &Given, words: &str) -> String {
     format!("{} {unit} {words}", given.number.digits)
 }
 
-/// A speed constant is over the peak between two terminals where nothing else is said.
-fn read_speed_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Option<Emf<'a>> {
+/// Whether nothing says of a speed constant if its voltage is the peak between two terminals or the mean over
+/// block commutation. Of a flat top they are one; of a sine makers of outrunners print the mean, and an
+/// oscilloscope shows the peak. A second constant gives it away.
+fn is_open(reader: &Reader, shape: Option<EmfShape>) -> bool {
+    let differ = |shape| {
+        let [peak, mean] = [Reading::LinePeak, Reading::BlockMean].map(|of| of.factor(shape));
+        (peak / mean - 1.0).abs() > 0.005
+    };
+    let stated = FIELDS.iter().filter(|name| reader.field(name).is_some());
+    stated.count() == 1 && shape.is_some_and(differ)
+}
+
+/// A speed constant is over the peak between two terminals where nothing else is said, and need be.
+fn read_speed_constant<'a>(
+    reader: &Reader<'a>,
+    shape: Option<EmfShape>,
+    errors: &mut Collector,
+) -> Option<Emf<'a>> {
     let mut given = reader.quantity(errors, "speed_constant")?;
     let others: Vec<Basis> = given
         .basis
@@ -317,6 +341,10 @@ fn read_speed_constant<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Optio
         .filter(|basis| *basis != Basis::LineToLine)
         .collect();
     let reading = match others[..] {
+        [] if is_open(reader, shape) => {
+            push_forms(&given, [false, true], None, shape, errors);
+            return None;
+        }
         [] | [Basis::Peak] => Reading::LinePeak,
         [Basis::PeakToPeak] => {
             given.si *= 2.0;

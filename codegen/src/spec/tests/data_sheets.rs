@@ -183,14 +183,26 @@ fn torque_and_speed_constants_state_the_emf() {
             ("torque_constant", per_peak * phase, "Nm/Apk"),
             ("torque_constant", per_rms * phase, "N m/A per_rms_ampere"),
             ("torque_constant", per_rms * phase, "Nm/Arms"),
-            ("speed_constant", 30.0 / PI / (line_peak * phase), "rpm/V"),
-            ("speed_constant", 30.0 / PI / (line_peak * phase), "RPM/V"),
+            (
+                "speed_constant",
+                30.0 / PI / (line_peak * phase),
+                "rpm/V peak",
+            ),
+            (
+                "speed_constant",
+                30.0 / PI / (line_peak * phase),
+                "RPM/V line-line peak",
+            ),
             (
                 "speed_constant",
                 30.0 / PI / (2.0 * line_peak * phase),
                 "rpm/Vpp",
             ),
-            ("speed_constant", 30.0 / PI / (line_peak * phase), "min-1/V"),
+            (
+                "speed_constant",
+                30.0 / PI / (line_peak * phase),
+                "min-1/V amplitude",
+            ),
             (
                 "speed_constant",
                 30.0 / PI / (block * phase),
@@ -414,7 +426,7 @@ fn rms_volts_and_rms_amperes_agree() {
 #[test]
 fn a_kv_rating_is_enough() {
     let text = "poles = 14\nresistance = \"50.8 mohm terminal\"\ninductance = \"17.46 uH terminal\"\n\
-                speed_constant = \"150 rpm/V\"\nemf_shape = \"sine\"\nrated_current = \"30 A\"\nrated_speed = \"4000 rpm\"";
+                speed_constant = \"150 rpm/V peak\"\nemf_shape = \"sine\"\nrated_current = \"30 A\"\nrated_speed = \"4000 rpm\"";
     let motor = of_file(&newcomer(text, 48, 80)).motor;
     assert_eq!(motor.pole_pairs, 7);
     near(motor.emf_constant, 30.0 / PI / 150.0 / 3_f64.sqrt());

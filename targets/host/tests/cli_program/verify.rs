@@ -292,7 +292,8 @@ fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
         assert!(all.stdout.contains(text), "no `{text}` in\n{}", all.stdout);
     }
     assert!(
-        !all.stdout.contains("| tracking error, rms"),
+        !all.stdout
+            .contains("| distance from quasi-square currents, rms"),
         "{}",
         all.stdout
     );
@@ -305,7 +306,8 @@ fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
         "0.1",
     ]);
     assert!(
-        one.stdout.contains("| tracking error, rms"),
+        one.stdout
+            .contains("| distance from quasi-square currents, rms"),
         "{}",
         one.stdout
     );

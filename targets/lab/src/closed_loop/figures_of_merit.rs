@@ -138,8 +138,16 @@ impl FiguresOfMerit {
             ("current harmonic 13", self.i13_pct, "%"),
             ("current distortion", self.thd_pct, "%"),
             ("phase current, rms", self.current_rms_a, "A"),
-            ("tracking error, rms", self.tracking_rms_a, "A"),
-            ("commutation", self.commutation_us, "us"),
+            (
+                "distance from quasi-square currents, rms",
+                self.tracking_rms_a,
+                "A",
+            ),
+            (
+                "commutation of quasi-square currents",
+                self.commutation_us,
+                "us",
+            ),
             ("switching per device", self.switching_hz, "Hz"),
             ("saturated periods", self.saturated_pct, "%"),
         ]
