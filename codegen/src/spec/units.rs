@@ -80,6 +80,12 @@ impl Unit {
         quantities::readings(&product.powers)
     }
 
+    /// The usual spellings of a quantity's units.
+    pub fn spellings(dimension: Dimension) -> &'static [&'static str] {
+        let known = KNOWN.iter().find(|(known, _)| *known == dimension);
+        known.map_or(&[], |(_, spellings)| spellings)
+    }
+
     /// What `value` of a unit is of its inverse, if that is one of some quantities: 20 mA/count for 50 counts/A.
     pub(super) fn of_inverse(value: f64, symbol: &str, dimensions: &[Dimension]) -> Option<String> {
         let (inverse, _) = Self::parse(&format!("1/({symbol})"))?;

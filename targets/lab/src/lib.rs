@@ -17,6 +17,7 @@ pub mod faults;
 pub mod halls;
 mod inputs;
 mod interpreted;
+pub mod judgement;
 pub mod log;
 pub mod motors;
 pub mod plant;

@@ -56,7 +56,7 @@ pub fn sentence(times: &[StepTime]) -> String {
     let told = time.told();
     let (in_control, any) = (told.control_cycles, told.any_cycles);
     format!(
-        "{} {in_control} cycles in control, {} % of the period; {any} in any step, {} %; Rust, {} at {}",
+        "{} {in_control} cycles in control, {} % of a period; at worst {} %; Rust, {}, {}",
         if time.is_bound() { "at most" } else { "about" },
         time.percent_of_period(in_control),
         time.percent_of_period(any),
@@ -82,7 +82,7 @@ mod tests {
         let (counted, data) = told("pdcc");
         assert!(counted.starts_with("at most "), "{counted}");
         assert!(
-            counted.ends_with(" %; Rust, STM32G431 at 170 MHz"),
+            counted.ends_with(" %; Rust, STM32G431, 170 MHz"),
             "{counted}"
         );
         assert_eq!(data.len(), 3);
@@ -90,7 +90,7 @@ mod tests {
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
         assert!(
-            estimated.ends_with(" %; Rust, STM32F030 at 64 MHz"),
+            estimated.ends_with(" %; Rust, STM32F030, 64 MHz"),
             "{estimated}"
         );
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));

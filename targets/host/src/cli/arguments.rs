@@ -23,12 +23,16 @@ const AFTER_HELP: &str = "Without a command: the report on the 660 W motor.\n\
     name = "hexagen",
     version,
     after_help = AFTER_HELP,
+    args_conflicts_with_subcommands = true,
     after_long_help = format!("{AFTER_HELP}\n\nControllers and their options:\n{}", option_help())
 )]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// Without a command: what the report prints and writes.
+    #[command(flatten)]
+    pub output: report::Output,
 }
 
 /// What to do.

@@ -38,10 +38,21 @@ pub fn run() -> ExitCode {
             };
         }
     };
-    let command = arguments
-        .command
-        .unwrap_or_else(|| Command::Report(commands::report::Options::default()));
-    let outcome = match command {
+    let outcome = match arguments.command {
+        None => commands::report::run_default(&arguments.output),
+        Some(command) => run_command(command),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
+    }
+}
+
+fn run_command(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Report(options) => commands::report::run(&options),
         Command::Generate(options) => commands::generate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
@@ -60,12 +71,5 @@ pub fn run() -> ExitCode {
         Command::Check(options) => commands::check::run(&options),
         Command::Explain(options) => commands::explain::run(&options),
         Command::Completions(options) => commands::completions::run(&options),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.print();
-            failure.exit_code()
-        }
     }
 }

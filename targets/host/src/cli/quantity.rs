@@ -1,12 +1,30 @@
-//! Quantities on the command line: a number, with or without a unit.
+//! Quantities on the command line: a number with its unit, which only an option that names one may lack.
 
 use hexagen_codegen::spec::units::{Dimension, Unit};
 use hexagen_codegen::spec::{EmfShape, Harmonics};
 use hexagen_lab::engine::PerSensor;
 
+/// A number with a unit of one dimension; 0 needs none.
+fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
+    match split(text.trim()) {
+        Some((number, "")) if number != 0.0 => {
+            let units: Vec<String> = Unit::spellings(dimension)
+                .iter()
+                .take(2)
+                .map(|unit| format!("`{number}{unit}`"))
+                .collect();
+            Err(format!(
+                "`{text}` has no unit; write it like {}",
+                units.join(" or ")
+            ))
+        }
+        _ => quantity_or_number(text, dimension),
+    }
+}
+
 /// A number with an optional unit of one dimension; without one it is in SI units (degrees for
 /// angles).
-fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
+fn quantity_or_number(text: &str, dimension: Dimension) -> Result<f64, String> {
     let text = text.trim();
     let (number, symbol) = split(text).ok_or_else(|| format!("`{text}` is not a number"))?;
     if symbol.is_empty() {
@@ -60,7 +78,12 @@ fn within(value: f64, least: f64, most: f64, unit: &str) -> Result<f64, String> 
 
 /// Newton metres.
 pub(super) fn torque(text: &str) -> Result<f64, String> {
-    within(quantity(text, Dimension::Torque)?, 0.0, 1e5, " Nm")
+    within(
+        quantity_or_number(text, Dimension::Torque)?,
+        0.0,
+        1e5,
+        " Nm",
+    )
 }
 
 /// Seconds.
@@ -110,7 +133,12 @@ pub(super) fn counts(text: &str) -> Result<f64, String> {
 
 /// kg m2.
 pub(super) fn inertia(text: &str) -> Result<f64, String> {
-    within(quantity(text, Dimension::Inertia)?, 1e-9, 100.0, " kg m2")
+    within(
+        quantity_or_number(text, Dimension::Inertia)?,
+        1e-9,
+        100.0,
+        " kg m2",
+    )
 }
 
 /// A true value over the stated one.
@@ -146,7 +174,7 @@ pub(super) fn emf_shape(text: &str) -> Result<EmfShape, String> {
             let flat_top = if flat_top.is_empty() {
                 120.0
             } else {
-                quantity(flat_top, Dimension::Angle)?
+                quantity_or_number(flat_top, Dimension::Angle)?
             };
             let flat_top_deg = within(flat_top, 1.0, 179.0, " degrees of flat top")?;
             Ok(EmfShape::Trapezoidal { flat_top_deg })
@@ -174,7 +202,7 @@ fn harmonic(text: &str) -> Result<(u32, f64, f64), String> {
         || format!("`{text}` is not an odd order from 3 to 23 and a percentage, as in `5=4`");
     let (order, share) = text.split_once('=').ok_or_else(wrong)?;
     let (share, phase) = share.split_once('@').unwrap_or((share, "0"));
-    let phase = quantity(phase, Dimension::Angle)?.to_radians();
+    let phase = quantity_or_number(phase, Dimension::Angle)?.to_radians();
     let order: u32 = order.trim().parse().map_err(|_| wrong())?;
     let percent = split(share.trim())
         .filter(|(percent, unit)| percent.abs() <= 100.0 && matches!(*unit, "" | "%"));
@@ -204,7 +232,7 @@ mod tests {
     #[test]
     fn numbers_with_and_without_units() {
         assert_eq!(time("1us"), Ok(1e-6));
-        assert_eq!(time("2e-6"), Ok(2e-6));
+        assert_eq!(time("0"), Ok(0.0));
         assert_eq!(torque("-0.5 Nm"), Ok(-0.5));
         assert_eq!(voltage("48V"), Ok(48.0));
         assert_eq!(current_text("40A"), Ok("40 A".to_owned()));
@@ -212,9 +240,9 @@ mod tests {
         assert_eq!(rpm("1500rpm"), Ok(1500.0));
         assert_eq!(radians("180deg"), Ok(std::f64::consts::PI));
         assert_eq!(hall_error("5deg"), Ok([5.0; 3]));
-        assert_eq!(hall_error("5deg,-3,0"), Ok([5.0, -3.0, 0.0]));
+        assert_eq!(hall_error("5deg,-3deg,0"), Ok([5.0, -3.0, 0.0]));
         assert_eq!(adc_offset("200mA"), Ok(PerSensor(vec![0.2])));
-        assert_eq!(adc_offset("0.2A,-1"), Ok(PerSensor(vec![0.2, -1.0])));
+        assert_eq!(adc_offset("0.2A,-1A"), Ok(PerSensor(vec![0.2, -1.0])));
         assert_eq!(adc_scale("1.1,0.9,1.2"), Ok(PerSensor(vec![1.1, 0.9, 1.2])));
         assert_eq!(counts("1.5 counts"), Ok(1.5));
     }
@@ -253,6 +281,10 @@ mod tests {
             voltage("48 v"),
             Err("unknown unit `v`; did you mean `V`?".to_owned())
         );
+        assert_eq!(
+            time("500"),
+            Err("`500` has no unit; write it like `500s` or `500ms`".to_owned())
+        );
         assert_eq!(factor("1 A"), Err("`1 A` is not a number".to_owned()));
         assert_eq!(
             factor("1e300"),
@@ -262,7 +294,7 @@ mod tests {
             torque("-1e300"),
             Err("-1e300 is out of range: at most 100000 Nm".to_owned())
         );
-        assert!(hall_error("1,2").is_err() && adc_offset("1,2,3,4").is_err());
+        assert!(hall_error("1deg,2deg").is_err() && adc_offset("1A,2A,3A,4A").is_err());
         assert!(adc_scale("1,200").is_err() && counts("1 A").is_err());
         assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
     }

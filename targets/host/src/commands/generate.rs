@@ -1,11 +1,14 @@
 //! `hexagen generate`: code, intermediate form or data sheet of one controller.
 
-use crate::cli::{DriveArguments, Emit, Failure, note, print_text, tell_warnings, write_file};
+use crate::cli::{
+    DriveArguments, Emit, Failure, note, print_json, print_text, tell_warnings, write_file,
+};
 use clap::Args;
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_lab::engine::Prepared;
-use std::path::{Path, PathBuf};
+use serde::Serialize;
+use std::path::PathBuf;
 
 /// Options of `generate`.
 #[derive(Args, Clone, Debug)]
@@ -20,6 +23,9 @@ pub struct Options {
     /// hexagen.c into this folder instead of stdout
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Print one JSON object with the texts of all files
+    #[arg(long, conflicts_with = "out")]
+    pub json: bool,
 }
 
 /// A text of a drive; the same drive gives the same bytes.
@@ -48,19 +54,77 @@ pub fn text_of(drive: &Prepared, emit: Emit) -> String {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = options.drive.prepare()?;
     tell_warnings(&drive);
-    match options.emit {
-        Emit::Gappa => return write_scripts(&drive, options.out.as_deref()),
-        Emit::C99 => return write_c99(&drive, options.out.as_deref()),
-        _ => {}
+    let files = files_of(&drive, options.emit);
+    if options.json {
+        return print_json(&Texts {
+            motor: &drive.motor,
+            controller: &drive.variant,
+            files: &files,
+        });
     }
-    let text = text_of(&drive, options.emit);
-    let Some(folder) = &options.out else {
-        return print_text(&text);
-    };
-    let path = folder.join(format!("{}.{}", drive.motor, options.emit.ending()));
-    write_file(&path, text.as_bytes())?;
-    note(&path.display().to_string());
-    Ok(())
+    match (&options.out, files.as_slice()) {
+        (Some(folder), _) => {
+            for File { name, text } in &files {
+                let path = folder.join(name);
+                write_file(&path, text.as_bytes())?;
+                note(&path.display().to_string());
+            }
+            Ok(())
+        }
+        (None, [File { text, .. }]) => print_text(text),
+        (None, _) => Err(Failure::Argument(
+            "the text is of several files; add `--out DIR`, or `--json`".to_owned(),
+        )),
+    }
+}
+
+/// A file of a text.
+#[derive(Debug, Serialize)]
+struct File {
+    name: String,
+    text: String,
+}
+
+/// The texts of a drive.
+#[derive(Debug, Serialize)]
+struct Texts<'a> {
+    motor: &'a str,
+    controller: &'a str,
+    files: &'a [File],
+}
+
+/// The files of a text: one script each for Gappa, header and source of drive and runtime in C.
+fn files_of(drive: &Prepared, emit: Emit) -> Vec<File> {
+    match emit {
+        Emit::Gappa => emit_gappa(&drive.generated.graph)
+            .iter()
+            .map(|script| File {
+                name: format!("{}.{}.g", drive.motor, script.name),
+                text: script.to_string(),
+            })
+            .collect(),
+        Emit::C99 => {
+            let Sources {
+                name,
+                header,
+                source,
+            } = c99_of(drive);
+            let own = [("h", header), ("c", source)];
+            let own = own.map(|(ending, text)| File {
+                name: format!("{name}.{ending}"),
+                text,
+            });
+            let shared = RUNTIME.map(|(name, text)| File {
+                name: name.to_owned(),
+                text: text.to_owned(),
+            });
+            own.into_iter().chain(shared).collect()
+        }
+        _ => vec![File {
+            name: format!("{}.{}", drive.motor, emit.ending()),
+            text: text_of(drive, emit),
+        }],
+    }
 }
 
 /// The drive in C, under the name of its type.
@@ -71,38 +135,4 @@ fn c99_of(drive: &Prepared) -> Sources {
         &generated.interface,
         &generated.interface.type_name,
     )
-}
-
-/// Writes header and source of the drive and of the runtime; the source includes both headers.
-fn write_c99(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
-    let folder = folder.ok_or_else(|| {
-        Failure::Argument("`--emit c99` writes four files; add `--out DIR`".to_owned())
-    })?;
-    let Sources {
-        name,
-        header,
-        source,
-    } = c99_of(drive);
-    let own = [("h", header), ("c", source)];
-    let own = own.map(|(ending, text)| (format!("{name}.{ending}"), text));
-    let shared = RUNTIME.map(|(name, text)| (name.to_owned(), text.to_owned()));
-    for (name, text) in own.into_iter().chain(shared) {
-        let path = folder.join(name);
-        write_file(&path, text.as_bytes())?;
-        note(&path.display().to_string());
-    }
-    Ok(())
-}
-
-/// Writes one file per script, as the checker reads them.
-fn write_scripts(drive: &Prepared, folder: Option<&Path>) -> Result<(), Failure> {
-    let folder = folder.ok_or_else(|| {
-        Failure::Argument("`--emit gappa` writes several files; add `--out DIR`".to_owned())
-    })?;
-    for script in emit_gappa(&drive.generated.graph) {
-        let path = folder.join(format!("{}.{}.g", drive.motor, script.name));
-        write_file(&path, script.to_string().as_bytes())?;
-    }
-    note(&folder.display().to_string());
-    Ok(())
 }

@@ -1,8 +1,12 @@
 //! `hexagen replay`: every word of a drive from a log of what it was given.
 
-use crate::cli::{DriveArguments, Failure, note, print_text, tell_warnings, write_file};
+use crate::cli::{
+    DriveArguments, Failure, note, print_json, print_text, tell_warnings, write_file,
+};
 use clap::Args;
 use hexagen_lab::replay::replay;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +25,20 @@ pub struct Options {
     /// Write the periods into a file in place of stdout
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+    /// Print one JSON object with the periods
+    #[arg(long, conflicts_with = "csv")]
+    pub json: bool,
+}
+
+/// A replayed log.
+#[derive(Debug, Serialize)]
+struct Periods<'a> {
+    motor: &'a str,
+    controller: &'a str,
+    /// The period that tripped, and its fault.
+    tripped: Option<(u64, String)>,
+    /// By column.
+    periods: Vec<BTreeMap<String, String>>,
 }
 
 /// Opens a log.
@@ -46,6 +64,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let mut rows = Vec::new();
     let replayed = replay(&drive, open_log(&options.log)?, &mut rows)
         .map_err(|error| in_log(&options.log, &error))?;
+    if options.json {
+        let periods = csv::Reader::from_reader(rows.as_slice()).into_deserialize();
+        let periods: Result<_, csv::Error> = periods.collect();
+        return print_json(&Periods {
+            motor: &drive.motor,
+            controller: &drive.variant,
+            tripped: replayed
+                .fault
+                .map(|(period, fault)| (period as u64, fault.to_string())),
+            periods: periods.map_err(|error| in_log(&options.log, &error))?,
+        });
+    }
     match &options.csv {
         Some(csv) => write_file(csv, &rows)?,
         None => print_text(String::from_utf8_lossy(&rows).trim_end())?,

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub(super) const FOLDER: &str = "target/hexagen";
 
 /// Options of `report`.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Args, Clone, Debug)]
 pub struct Options {
     /// Motor file, or name of a library motor [default: the 660 W motor of the paper]
     #[arg(value_name = "MOTOR")]
@@ -20,6 +20,14 @@ pub struct Options {
     /// Board, a name of the library or a file [default: the motor file's]
     #[arg(long, value_name = "BOARD")]
     pub board: Option<String>,
+    /// What is printed and written.
+    #[command(flatten)]
+    pub output: Output,
+}
+
+/// What a report prints and writes.
+#[derive(Args, Clone, Debug)]
+pub struct Output {
     /// Folder of the page [default: target/hexagen]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -36,9 +44,21 @@ pub struct Options {
 /// # Errors
 /// No such motor, diagnostics, or a page that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     let motor = options.motor.as_deref().unwrap_or(PAPER_MOTOR);
-    let plan = Plan::of(motor, options.board.as_deref())?;
+    write(motor, options.board.as_deref(), &options.output)
+}
+
+/// The report on the paper's motor.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_default(output: &Output) -> Result<(), Failure> {
+    write(PAPER_MOTOR, None, output)
+}
+
+fn write(motor: &str, board: Option<&str>, options: &Output) -> Result<(), Failure> {
+    let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
+    let plan = Plan::of(motor, board)?;
     // An unwritable folder is reported before the long run.
     render::prepare_folder(&folder)?;
     let (data, checked) = plan.run(&Bar::default())?;
@@ -64,7 +84,10 @@ fn lines(data: &Results, page: &Path) -> Vec<String> {
     let (verdict, rows) = verdict(data).unwrap_or_default();
     let head = format!("{}: {verdict}", data.file);
     let rows = rows.into_iter().chain([page]);
-    let rows = rows.map(|(name, text)| format!("{name:<11} {text}"));
+    let rows = rows.map(|(name, text)| match name {
+        "best" => format!("{name:<11} {text} (--all lists them)"),
+        _ => format!("{name:<11} {text}"),
+    });
     [head]
         .into_iter()
         .chain(rows)

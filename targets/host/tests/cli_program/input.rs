@@ -173,7 +173,14 @@ fn options_out_of_range_or_at_odds_are_told() {
             "is a voltage",
         ),
         (
-            &["simulate", PAPER, "--rpm", "1", "--adc-offset", "1,2,3,4"],
+            &[
+                "simulate",
+                PAPER,
+                "--rpm",
+                "1",
+                "--adc-offset",
+                "1A,2A,3A,4A",
+            ],
             "one value for all sensed phases, or one of each",
         ),
         (

@@ -155,7 +155,7 @@ fn plant_options_reach_the_plant() {
         ["--scale-adc", "1.01,0.99"],
         ["--adc-noise", "2"],
         ["--conversion-time", "1us"],
-        ["--v-bus", "40"],
+        ["--v-bus", "40V"],
         ["--scale-r", "2"],
         ["--scale-l", "0.9"],
         ["--scale-kb", "0.9"],

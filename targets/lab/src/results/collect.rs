@@ -7,6 +7,7 @@ use super::{
 use crate::accuracy::{WORDS, at_speeds, one_step, with_word};
 use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor, stem};
 use crate::envelope::TorqueBounds;
+use crate::judgement::Judgement;
 use crate::robustness::robustness;
 use crate::text::significant;
 use crate::verification::{Checked, verify_drives};
@@ -98,7 +99,7 @@ impl Plan {
             links: links(&self.motor, &self.own.rust()),
             errors,
             robustness,
-            ..self.results(variants)
+            ..self.results(variants)?
         };
         Ok((data, checked))
     }
@@ -109,7 +110,7 @@ impl Plan {
     /// A plant parameter out of range.
     pub fn table(self, progress: &dyn Progress) -> Result<Results, LabError> {
         let variants = self.simulate(progress)?;
-        Ok(self.results(variants))
+        self.results(variants)
     }
 
     fn simulate(&self, progress: &dyn Progress) -> Result<Vec<Variant>, LabError> {
@@ -124,9 +125,12 @@ impl Plan {
         variants.collect()
     }
 
-    fn results(self, variants: Vec<Variant>) -> Results {
+    fn results(self, variants: Vec<Variant>) -> Result<Results, LabError> {
         let own = &self.own;
-        Results {
+        let judgement = (!self.is_expected)
+            .then(|| Judgement::of(own))
+            .transpose()?;
+        Ok(Results {
             generator: format!("hexagen {}", env!("CARGO_PKG_VERSION")),
             name: own.spec.name.clone(),
             file: self.file(),
@@ -141,8 +145,9 @@ impl Plan {
             verification: None,
             bounds: TorqueBounds::of(&Envelope::of(&own.spec), own.spec.motor.rated_speed),
             variants,
-            own: (!self.is_expected).then(|| Own {
+            own: judgement.map(|judgement| Own {
                 variant: 0,
+                judgement,
                 times: own.generated.interface.times.clone(),
             }),
             links: Vec::new(),
@@ -150,7 +155,7 @@ impl Plan {
             robustness: None,
             marks: if self.is_paper { paper_marks() } else { vec![] },
             notes: self.notes,
-        }
+        })
     }
 
     /// The motor's name, with that of a board in place of the motor file's.

@@ -8,6 +8,7 @@ use super::links::FieldLinks;
 use crate::closed_loop::{FiguresOfMerit, Held, SpeedLimit, Trace, Trip};
 use crate::engine::Model;
 use crate::envelope::TorqueBounds;
+use crate::judgement::Judgement;
 use crate::robustness::Robustness;
 use crate::stability::Stability;
 use hexagen_codegen::interface::FormatEntry;
@@ -65,6 +66,8 @@ pub struct Results {
 pub struct Own {
     /// Place among the variants.
     pub variant: usize,
+    /// Whether and how well it works.
+    pub judgement: Judgement,
     /// Time of a step, by chip.
     pub times: Vec<StepTime>,
 }

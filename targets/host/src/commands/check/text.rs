@@ -1,49 +1,64 @@
 //! The lines of `hexagen check`.
 
-use super::{Checked, Chosen, Point};
 use crate::cli::wrapped;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{CurrentSensing, InverterSpec, MotorSpec, Reference, RotorSensing};
+use hexagen_codegen::spec::{CurrentSensing, InverterSpec, MotorSpec, RotorSensing};
 use hexagen_lab::engine::Prepared;
+use hexagen_lab::judgement::{Judgement, Point};
 use hexagen_lab::text::significant;
 use hexagen_lab::times::sentence;
+use std::iter::repeat;
 
 /// What a torque of more than the demanded one is worth a word for.
 const MORE: f64 = 1.01;
 
-/// About ten lines of at most 100 columns, then the options chosen by default and the `next` command.
-pub(super) fn lines(checked: &Checked, drive: &Prepared, next: &str) -> Vec<String> {
+/// About ten lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: each
+/// option chosen by default on a line of its own, with its reason.
+pub(super) fn lines(
+    judgement: &Judgement,
+    drive: &Prepared,
+    with_reasons: bool,
+    next: &str,
+) -> Vec<String> {
     let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
     let mut rows = vec![
         ("motor", of_motor(motor)),
-        ("controller", of_controller(drive)),
-        ("sensing", of_sensing(checked, inverter)),
-        ("bus", of_bus(checked, drive)),
+        ("controller", of_controller(judgement, drive)),
+        ("sensing", of_sensing(judgement, inverter)),
+        ("bus", of_bus(judgement, drive)),
     ];
-    rows.extend(of_limits(checked).map(|text| ("limits", text)));
-    rows.push(("current", of_current(checked, motor, inverter)));
+    rows.extend(of_limits(judgement).map(|text| ("limits", text)));
+    rows.push(("current", of_current(judgement, motor, inverter)));
     rows.push(("step", sentence(&drive.generated.interface.times)));
-    rows.push(("torque", of_torque(checked)));
-    rows.push(("ripple", of_ripple(checked)));
-    let mut heading = "by default";
-    for Chosen {
-        option,
-        value,
-        reason,
-    } in &checked.chosen
-    {
-        rows.push((heading, format!("{option} {value}: {reason}")));
-        heading = "";
-    }
+    rows.push(("torque", of_torque(judgement)));
+    let heading = ["by default"].into_iter().chain(repeat(""));
+    rows.extend(heading.zip(of_defaults(judgement, with_reasons)));
     rows.push(("next", next.to_owned()));
     let rows = rows
         .iter()
         .map(|(title, text)| format!("{title:<12}{text}"));
-    [format!("{}: {}", checked.motor, checked.verdict)]
+    [format!("{}: {}", judgement.motor, judgement.verdict)]
         .into_iter()
         .chain(rows)
         .map(|line| wrapped(&line))
         .collect()
+}
+
+/// The options that rules chose.
+fn of_defaults(judgement: &Judgement, with_reasons: bool) -> Vec<String> {
+    let chosen = judgement.chosen.iter();
+    let choices = chosen
+        .clone()
+        .map(|choice| format!("{} {}", choice.option, choice.value));
+    if with_reasons {
+        let reasons = chosen.map(|choice| choice.reason);
+        let lines = choices.zip(reasons);
+        return lines
+            .map(|(choice, reason)| format!("{choice}: {reason}"))
+            .collect();
+    }
+    let choices: Vec<String> = choices.collect();
+    vec![format!("{} (--reasons)", choices.join(", "))]
 }
 
 fn of_motor(motor: &MotorSpec) -> String {
@@ -61,25 +76,26 @@ fn of_motor(motor: &MotorSpec) -> String {
     )
 }
 
-fn of_controller(drive: &Prepared) -> String {
-    let common = drive.spec.controller.common();
-    let current = match common.reference {
-        Reference::Proportional => "proportional",
-        Reference::QuasiSquare => "quasi-square",
-    };
+fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     let edges = match drive.spec.inverter.rotor_sensing {
         RotorSensing::SampledHalls => "Hall edges to a period (a timer is finer)",
         RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer",
         RotorSensing::Angle(_) => "an angle sensor",
     };
+    let rates = judgement
+        .points
+        .iter()
+        .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
+    let mut rates: Vec<String> = rates.collect();
+    rates.dedup();
     format!(
-        "{}, {}-bit words, {current} current, {edges}",
+        "{}, {edges}; switches at {} kHz",
         drive.spec.controller.kind(),
-        common.word
+        rates.join(", ")
     )
 }
 
-fn of_sensing(checked: &Checked, inverter: &InverterSpec) -> String {
+fn of_sensing(judgement: &Judgement, inverter: &InverterSpec) -> String {
     let place = match inverter.current_sensing {
         CurrentSensing::InPhase => "in the phases",
         CurrentSensing::LowSide(_) => "in the low legs",
@@ -93,11 +109,11 @@ fn of_sensing(checked: &Checked, inverter: &InverterSpec) -> String {
         inverter.adc_bits,
         engineering(inverter.shown_current(), "A"),
         engineering(inverter.adc_gain.abs(), "A"),
-        significant(checked.rated_counts, 3),
+        significant(judgement.rated_counts, 3),
     )
 }
 
-fn of_bus(checked: &Checked, drive: &Prepared) -> String {
+fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
     let (share, v_bus) = (drive.spec.reach_share(), drive.spec.inverter.v_bus);
     // Where legs must be low for a while.
     let reach = if share < 1.0 {
@@ -107,17 +123,17 @@ fn of_bus(checked: &Checked, drive: &Prepared) -> String {
     };
     format!(
         "rated speed takes {}, the inverter makes {reach}{}; whole current to {:.0} rpm",
-        engineering(checked.rating_v, "V"),
+        engineering(judgement.rating_v, "V"),
         engineering(v_bus, "V"),
-        checked.envelope_rpm,
+        judgement.envelope_rpm,
     )
 }
 
 /// The limits of the bus current, where there are any.
-fn of_limits(checked: &Checked) -> Option<String> {
+fn of_limits(judgement: &Judgement) -> Option<String> {
     let limits = [
-        (checked.bus_current_limit_a, "drawn from the bus"),
-        (checked.return_current_limit_a, "returned to it"),
+        (judgement.bus_current_limit_a, "drawn from the bus"),
+        (judgement.return_current_limit_a, "returned to it"),
     ];
     let limits = limits.into_iter().filter_map(|(most, way)| {
         let most = engineering(most?, "A");
@@ -128,13 +144,13 @@ fn of_limits(checked: &Checked) -> Option<String> {
 }
 
 /// The demanded torque's current beside the rated one, and what the largest set-point gives beyond it.
-fn of_current(checked: &Checked, motor: &MotorSpec, inverter: &InverterSpec) -> String {
-    let beyond = if checked.greatest_torque_nm > MORE * checked.torque_nm {
+fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec) -> String {
+    let beyond = if judgement.greatest_torque_nm > MORE * judgement.torque_nm {
         format!(
             "; max_current {} gives {} {}",
             engineering(inverter.max_current, "A"),
-            engineering(checked.greatest_torque_nm, "Nm"),
-            checked
+            engineering(judgement.greatest_torque_nm, "Nm"),
+            judgement
                 .greatest_torque_rpm
                 .map_or("at no speed".to_owned(), |rpm| format!("to {rpm:.0} rpm")),
         )
@@ -143,52 +159,41 @@ fn of_current(checked: &Checked, motor: &MotorSpec, inverter: &InverterSpec) -> 
     };
     format!(
         "{} takes a peak of {}, rated {}{beyond}; trips at {}",
-        engineering(checked.torque_nm, "Nm"),
-        engineering(checked.peak_a, "A"),
+        engineering(judgement.torque_nm, "Nm"),
+        engineering(judgement.peak_a, "A"),
         engineering(motor.rated_current, "A"),
         engineering(inverter.trip_current, "A"),
     )
 }
 
-fn of_torque(checked: &Checked) -> String {
-    let parts = checked.points.iter().map(|point| {
-        let at = place(checked, point);
+/// Torque and ripple, peak to peak of the means over a control period, of each run.
+fn of_torque(judgement: &Judgement) -> String {
+    let parts = judgement.points.iter().map(|point| {
+        let at = place(judgement, point);
         match (point.torque_pct, point.tripped) {
-            (_, Some(_)) => format!("trips {at}"),
-            (Some(torque), None) => format!("{} % {at}", significant(torque, 3)),
-            (None, None) => format!("none {at}"),
+            (_, Some(_)) => format!("{at} trips"),
+            (Some(torque), None) => format!(
+                "{at} {} %, ripple {} %",
+                significant(torque, 3),
+                significant(point.ripple_pp_pct, 2)
+            ),
+            (None, None) => format!("{at} none"),
         }
     });
     let parts: Vec<String> = parts.collect();
-    let demand = engineering(checked.torque_nm, "Nm");
-    format!("of {demand}: {}", parts.join(", "))
-}
-
-fn of_ripple(checked: &Checked) -> String {
-    let points = || checked.points.iter();
-    let ripples: Vec<String> = points()
-        .filter_map(|point| Some(format!("{} %", significant(point.ripple_pp_pct?, 2))))
-        .collect();
-    let mut rates: Vec<String> = points()
-        .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)))
-        .collect();
-    rates.dedup();
-    format!(
-        "{} peak to peak, means over a period; switches at {} kHz",
-        ripples.join(", "),
-        rates.join(", "),
-    )
+    let demand = engineering(judgement.torque_nm, "Nm");
+    format!("of {demand}: {}", parts.join("; "))
 }
 
 /// Where a run was.
-fn place(checked: &Checked, point: &Point) -> String {
-    let is_nominal = checked
+fn place(judgement: &Judgement, point: &Point) -> String {
+    let is_nominal = judgement
         .points
         .first()
         .is_some_and(|first| first.bus_v == point.bus_v);
     if is_nominal {
         format!("at {:.0} rpm", point.rpm)
     } else {
-        format!("there on a bus of {}", engineering(point.bus_v, "V"))
+        format!("there on {}", engineering(point.bus_v, "V"))
     }
 }

@@ -24,7 +24,7 @@ pub fn verdict(data: &Results) -> Option<(String, Vec<(&'static str, String)>)> 
         ("best", best(data, own.variant)),
     ];
     let rows = rows.into_iter().filter(|(_, text)| !text.is_empty());
-    Some((judged(data, variant, run), rows.collect()))
+    Some((sentence_of(&own.judgement.verdict), rows.collect()))
 }
 
 /// The verdict as the page's first blocks.
@@ -37,42 +37,19 @@ pub(super) fn verdict_blocks(data: &Results) -> Vec<Block> {
     for (name, text) in rows {
         table.row([Cell::from(name), Cell::from(text)]);
     }
-    vec![Block::Prose(format!("**{verdict}**")), Block::Table(table)]
+    let warnings = data.own.iter().flat_map(|own| &own.judgement.warnings);
+    let warnings = warnings.map(|warning| Block::Prose(warning.clone()));
+    [Block::Prose(format!("**{verdict}**")), Block::Table(table)]
+        .into_iter()
+        .chain(warnings)
+        .collect()
 }
 
-fn judged(data: &Results, variant: &Variant, run: &Run) -> String {
-    let trip = run.points.iter().find_map(|point| point.tripped);
-    if let Some(trip) = trip {
-        return format!("Does not work: {trip}.");
-    }
-    let Some(limit) = &run.limit else {
-        return "Not measured.".to_owned();
-    };
-    match (limit.outcome, limit.limit_pct) {
-        (LimitOutcome::NeverHeld, _) | (_, None) => {
-            "Does not work: it never holds its torque.".to_owned()
-        }
-        (LimitOutcome::NotReached, Some(_)) => {
-            format!(
-                "Works: it holds {} beyond rated speed.",
-                held(data, variant)
-            )
-        }
-        (LimitOutcome::Found, Some(percent)) if percent >= 100.0 => {
-            format!("Works: it holds {} past rated speed.", held(data, variant))
-        }
-        (LimitOutcome::Found, Some(percent)) => format!(
-            "Works, but holds {} up to {percent:.0} % of rated speed only.",
-            held(data, variant)
-        ),
-    }
-}
-
-fn held(data: &Results, variant: &Variant) -> String {
-    match variant.reach {
-        Some(torque) => format!("{} (what max_current allows)", quantity(torque, "Nm")),
-        None => format!("its rated {}", quantity(data.torque, "Nm")),
-    }
+/// With a capital and a full stop.
+fn sentence_of(verdict: &str) -> String {
+    let mut letters = verdict.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    format!("{}.", first.chain(letters).collect::<String>())
 }
 
 fn motor(data: &Results) -> String {
@@ -191,12 +168,8 @@ fn best(data: &Results, own: usize) -> String {
     match best {
         // Within the tolerance of the search the file's own is as good.
         Some((limit, variant)) if limit > own_limit + 1.0 => {
-            format!(
-                "{}: up to {} % (--all has all)",
-                variant.label,
-                number(limit, 0)
-            )
+            format!("{}: up to {} %", variant.label, number(limit, 0))
         }
-        _ => "none of the other variants holds the torque further (--all has all)".to_owned(),
+        _ => "none of the other variants holds the torque further".to_owned(),
     }
 }

@@ -1,0 +1,263 @@
+//! Whether and how well a drive will work: the verdict of `hexagen check` and of a report.
+//!
+//! The drive runs on the simulated motor from one start each: slowly, at rated speed, and there at the
+//! least bus voltage where one is stated.
+
+use crate::closed_loop::Trip;
+use crate::engine::Prepared;
+use crate::plant::PlantError;
+use crate::text::significant;
+use crate::times::Time;
+use hexagen_codegen::design::Envelope;
+use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::spec::RotorSensing;
+use hexagen_codegen::timing::StepTime;
+use serde::Serialize;
+
+/// Speeds of the runs over the rated one.
+const SPEEDS: [f64; 2] = [0.2, 1.0];
+
+/// Ripple that is worth a word, peak to peak in percent of the mean: more than a default drive has at
+/// up to 15 electrical degrees in a period.
+const RIPPLE: f64 = 7.0;
+
+/// Least torque at rated speed of a drive that works, percent.
+const LEAST_TORQUE: f64 = 50.0;
+
+/// Torque that is held, percent.
+const HELD: f64 = 99.0;
+
+/// Fewest ADC counts of the rated current for a smooth current.
+const COUNTS: f64 = 200.0;
+
+/// A run at one speed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// Mechanical speed, rpm.
+    pub rpm: f64,
+    /// Bus voltage, volt.
+    pub bus_v: f64,
+    /// Mean torque over the demanded one, percent; none for a drive that trips.
+    pub torque_pct: Option<f64>,
+    /// Ripple of the torque, peak to peak in percent of its mean.
+    pub ripple_pp_pct: Option<f64>,
+    /// Turn-ons per switch and second, mean of the six, hertz.
+    pub switching_hz: Option<f64>,
+    /// Trip.
+    pub tripped: Option<Trip>,
+}
+
+/// An option that a rule chose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chosen {
+    /// Option.
+    pub option: &'static str,
+    /// Value.
+    pub value: String,
+    /// Why.
+    pub reason: &'static str,
+}
+
+/// What was found about a drive.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Judgement {
+    /// Name of the motor.
+    pub motor: String,
+    /// Controller variant.
+    pub controller: String,
+    /// Whether it neither trips nor falls short of its torque at rated speed.
+    pub works: bool,
+    /// The verdict in words.
+    pub verdict: String,
+    /// Demanded torque, Nm.
+    pub torque_nm: f64,
+    /// Peak of a phase current at that torque, ampere.
+    pub peak_a: f64,
+    /// Torque of `max_current`, Nm.
+    pub greatest_torque_nm: f64,
+    /// Speed up to which the bus drives its whole current, rpm; none where it does not at standstill.
+    pub greatest_torque_rpm: Option<f64>,
+    /// Greatest voltage between two legs that the demanded torque takes at rated speed, volt.
+    pub rating_v: f64,
+    /// Speed up to which the bus drives the whole current of the demanded torque, rpm.
+    pub envelope_rpm: f64,
+    /// ADC counts of the rated current.
+    pub rated_counts: f64,
+    /// Greatest current drawn from the bus, ampere, where it is limited.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bus_current_limit_a: Option<f64>,
+    /// Greatest current returned to it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub return_current_limit_a: Option<f64>,
+    /// Options that nobody stated, with the value that a rule chose; not those of any number.
+    pub chosen: Vec<Chosen>,
+    /// Runs: slow, at rated speed, and there at the least bus voltage where `bus_min` is stated.
+    pub points: Vec<Point>,
+    /// Time of a step, by chip.
+    pub step: Vec<Time>,
+    /// Whether a step may take longer than the control period on the core that is named; the runs leave
+    /// its time out.
+    pub overruns: bool,
+    /// Warnings of the generator.
+    pub warnings: Vec<String>,
+}
+
+impl Judgement {
+    /// Runs a drive with its demanded torque.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn of(drive: &Prepared) -> Result<Self, PlantError> {
+        let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
+        let [slow, rated] = SPEEDS.map(|share| share * motor.rated_speed);
+        let mut points = vec![
+            at_speed(drive, slow, inverter.v_bus)?,
+            at_speed(drive, rated, inverter.v_bus)?,
+        ];
+        if let Some(least) = drive.least_bus {
+            points.push(at_speed(drive, rated, least)?);
+        }
+        let envelope = Envelope::of(&drive.spec);
+        let (torque, greatest) = (drive.demand(), drive.reach());
+        let set_point = torque / envelope.torque_constant();
+        let rpm = |omega_m: f64| omega_m * 30.0 / std::f64::consts::PI;
+        let times = &drive.generated.interface.times;
+        let mut judgement = Self {
+            motor: drive.motor.clone(),
+            controller: drive.variant.clone(),
+            works: true,
+            verdict: String::new(),
+            torque_nm: torque,
+            peak_a: set_point * envelope.emf_shape.current_peak(envelope.reference),
+            greatest_torque_nm: greatest,
+            greatest_torque_rpm: envelope.speed(greatest).map(rpm),
+            rating_v: envelope.bus_voltage(motor.rated_speed, set_point) * envelope.reach,
+            envelope_rpm: rpm(envelope.speed(torque).unwrap_or(0.0)),
+            rated_counts: motor.rated_current / inverter.adc_gain.abs(),
+            bus_current_limit_a: inverter.bus_currents.drawn,
+            return_current_limit_a: inverter.bus_currents.returned,
+            chosen: chosen(drive),
+            points,
+            step: times.iter().map(Time::from).collect(),
+            overruns: times.iter().any(StepTime::is_too_long),
+            warnings: drive.warnings.clone(),
+        };
+        let (works, verdict) = judgement.judge(drive);
+        (judgement.works, judgement.verdict) = (works, verdict);
+        Ok(judgement)
+    }
+
+    fn judge(&self, drive: &Prepared) -> (bool, String) {
+        if let Some(trip) = self.points.iter().find_map(|point| point.tripped) {
+            return (false, format!("does not work: {trip}"));
+        }
+        let [slow, rated, lowest @ ..] = self.points.as_slice() else {
+            return (false, "does not work: it was not run".to_owned());
+        };
+        if !slow.is_held() {
+            let left = self.left(slow);
+            return (
+                false,
+                format!("does not work: even at {:.0} rpm {left}", slow.rpm),
+            );
+        }
+        let left = format!("at rated speed {}", self.left(rated));
+        if rated.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
+            return (false, format!("does not work: {left}"));
+        }
+        let mut buts = Vec::new();
+        if !rated.is_held() {
+            buts.push(left);
+        }
+        buts.extend(lowest.iter().filter(|point| !point.is_held()).map(|point| {
+            format!(
+                "on a bus of {} {} % of the torque is left there",
+                engineering(point.bus_v, "V"),
+                significant(point.torque_pct, 3)
+            )
+        }));
+        buts.extend(self.rippling(&drive.spec.inverter.rotor_sensing));
+        if self.rated_counts < COUNTS {
+            let counts = significant(self.rated_counts, 3);
+            buts.push(format!("rated current is {counts} ADC counts only"));
+        }
+        if self.overruns {
+            buts.push("a step may take longer than the period".to_owned());
+        }
+        if !self.warnings.is_empty() {
+            buts.push("see the warnings".to_owned());
+        }
+        let verdict = if buts.is_empty() {
+            "works: it holds its torque at rated speed".to_owned()
+        } else {
+            format!("works, but {}", buts.join("; "))
+        };
+        (true, verdict)
+    }
+
+    /// The greatest ripple on the nominal bus, if it is worth a word.
+    fn rippling(&self, rotor: &RotorSensing) -> Option<String> {
+        let nominal = self.points.iter().take(SPEEDS.len());
+        let ripples = nominal.filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
+        let (rpm, ripple) = ripples.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
+        let finer = match rotor {
+            RotorSensing::SampledHalls => {
+                " (`hall_timer_clock`, a timer of the Hall edges, may lower it)"
+            }
+            RotorSensing::TimedHalls { .. } | RotorSensing::Angle(_) => "",
+        };
+        let text = format!(
+            "the torque ripples by {} % at {rpm:.0} rpm{finer}",
+            significant(ripple, 2)
+        );
+        (ripple > RIPPLE).then_some(text)
+    }
+
+    /// What is left of the torque at a speed, and what takes the rest.
+    fn left(&self, point: &Point) -> String {
+        let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
+        let what = if point.rpm < self.envelope_rpm {
+            // The bus drives the whole current of the reference between its commutations.
+            return format!("{torque} % of the torque, though the bus has room");
+        } else if self.bus_current_limit_a.is_some() {
+            "the bus and its current limit leave"
+        } else {
+            "the bus leaves"
+        };
+        format!("{what} {torque} % of the torque")
+    }
+}
+
+impl Point {
+    fn is_held(&self) -> bool {
+        self.torque_pct.is_some_and(|torque| torque >= HELD)
+    }
+}
+
+fn chosen(drive: &Prepared) -> Vec<Chosen> {
+    let options = drive.generated.interface.options.iter();
+    let chosen = options.filter(|option| option.is_choice).map(|option| {
+        Some(Chosen {
+            option: option.name,
+            value: option.value.replace('"', ""),
+            reason: option.reason?,
+        })
+    });
+    chosen.flatten().collect()
+}
+
+/// The fixed-point program at a speed in rad/s and a bus voltage, with the demanded torque.
+fn at_speed(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, PlantError> {
+    let demand = drive.demand();
+    let measured = drive.measure_on_bus(omega_m, demand, bus_v)?;
+    let figures = measured.figures;
+    let torque_pct = figures.mean_torque_nm.map(|torque| 100.0 * torque / demand);
+    Ok(Point {
+        rpm: omega_m * 30.0 / std::f64::consts::PI,
+        bus_v,
+        torque_pct: torque_pct.filter(|_| measured.tripped.is_none()),
+        ripple_pp_pct: figures.ripple_pp_pct,
+        switching_hz: figures.switching_hz,
+        tripped: measured.tripped,
+    })
+}
