@@ -64,7 +64,7 @@ impl Code {
                 "The section has no field of this name, so its value would have no effect.",
                 "resistence = \"135 mohm per_phase\"",
                 "resistance = \"135 mohm per_phase\"",
-                "Correct the name; `cargo doc` of hexagen-codegen lists all fields under `spec`.",
+                "Correct the name; `hexagen::specification` in the documentation lists all fields.",
             ),
             Self::DuplicateField => say(
                 "A field or section is written twice, and only one value can hold.",
@@ -141,7 +141,7 @@ impl Code {
                 "There is no such unit; a wrong prefix would be a factor of a thousand, so none is guessed.",
                 "f_pwm = \"20 KHz\"",
                 "f_pwm = \"20 kHz\"",
-                "Use a unit of the list under `spec`; upper and lower case differ (m is milli, M is mega).",
+                "Use a unit of the list in `hexagen::specification`; upper and lower case differ (m is milli, M is mega).",
             ),
             Self::AmbiguousUnit => say(
                 "The unit stands for two quantities: volt-seconds are an EMF over mechanical speed, or a flux linkage over electrical speed, which differ by the pole pairs.",
@@ -263,7 +263,7 @@ impl Code {
                 "Lower the trip current below the range, or leave it out.",
             ),
             Self::MaxCurrentAboveTrip => say(
-                "The largest set-point makes phase currents that trip the drive in health.",
+                "At the largest set-point the phase currents are above the trip level, so the drive trips without a fault.",
                 "bus_voltage = \"48 V\"\nmax_current = \"39 A\"\ntrip_current = \"38 A\"",
                 "bus_voltage = \"48 V\"\nmax_current = \"20 A\"\ntrip_current = \"38 A\"",
                 "Lower the set-point or raise the trip current.",
@@ -299,7 +299,7 @@ impl Code {
                 "Raise the PWM frequency or lower maximum_speed.",
             ),
             Self::OverSpeed => say(
-                "A turn of the rotor is measured to a control period. The over-speed is so far above the rated speed that a measurement of that never shows it, and so low that sectors are seen one by one when the rotor gets there.",
+                "The speed follows from the time of a turn, which is measured in whole control periods. The over-speed must be so far above the rated speed that this error never seems an over-speed, and so low that the drive still sees every sector at it.",
                 "bus_voltage = \"48 V\"\nover_speed = \"1900 rpm\"",
                 "bus_voltage = \"48 V\"\nover_speed = \"2600 rpm\"",
                 "State the speed that the mechanics bear, above every set-point and what it overshoots.",
@@ -436,8 +436,8 @@ impl Code {
         match self {
             Self::InductanceOutsideStableRange => say(
                 "With an inductance off by as much as its tolerance says the current loop is unstable.",
-                "pole_pairs = 4\ninductance_tolerance = \"60 %\"",
-                "pole_pairs = 4\ninductance_tolerance = \"10 %\"",
+                "inductance_tolerance = \"60 %\"",
+                "inductance_tolerance = \"10 %\"",
                 "Use `emf = \"model\"`, filter the estimate, or narrow the tolerance if the inductance is known better.",
             ),
             Self::ResistanceOutsideStableRange => say(
@@ -465,7 +465,7 @@ impl Code {
                 "Use `derived` for a drive.",
             ),
             Self::EstimateTurnsTooFar => say(
-                "The EMF of the last period stands for that of the next but one; at this speed it has turned too far by then.",
+                "The controller takes the EMF of the last period for that of the period after the next. At this speed the rotor turns so far in between that the EMF is another one.",
                 "f_pwm = \"4 kHz\"\nkind = \"pdcc\"\nemf = \"estimated\"",
                 "f_pwm = \"4 kHz\"\nkind = \"pdcc\"\nemf = \"observer\"",
                 "Leave `emf` out, or use a shorter period.",
@@ -474,7 +474,7 @@ impl Code {
                 "EMF and torque constant are one number in SI units. Of a sinusoidal motor only the means over block commutation are, as Maxon and others print them; the peak is pi/3 times that, 4.7 % more.",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"\nback_emf = \"0.1648 V/(rad/s) block_mean\"",
-                "Write `block_mean` in place of `line_to_line peak`.",
+                "Write `block_mean` in place of `line_to_line peak` in `back_emf`.",
             ),
             Self::RatingBeyondBus => say(
                 "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",

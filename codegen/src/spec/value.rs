@@ -265,7 +265,11 @@ fn stray_signs(lexemes: &[Lexeme]) -> Option<String> {
             Lexeme::Symbol('*' | '\u{b7}' | '.') => {
                 !(is_word(before) || is_number(before)) || !is_factor(after)
             }
-            Lexeme::Symbol('^') => !is_word(before) || !is_number(after),
+            Lexeme::Symbol('^') => {
+                let is_negative = matches!(after, Some(Lexeme::Symbol('-')));
+                !is_word(before) || !(is_number(after) || is_negative)
+            }
+            Lexeme::Symbol('-') if matches!(before, Some(Lexeme::Symbol('^'))) => !is_number(after),
             Lexeme::Symbol('-') => !is_word(before) || !(is_word(after) || is_number(after)),
             Lexeme::Symbol(sign) => !matches!(sign, '/' | '(' | ')' | '%'),
             Lexeme::Word(_) | Lexeme::Number(_) => false,

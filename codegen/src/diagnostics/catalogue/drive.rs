@@ -76,11 +76,12 @@ pub enum BusRemedy {
 const LIKELY: [f64; 2] = [0.5, 1.5];
 
 /// EMF and resistive drop of the rating exceed the bus. In volt: the bus; `emf`: line to line at
-/// rated speed; `drop`: of rated current in two phases.
+/// rated speed; `drop`: of rated current in two phases. `is_confirmed`: another field agrees with the EMF.
 pub fn bus_too_low(
     bus: &Part,
     [speed, current, stated, resistance]: [&Part; 4],
     [volts, emf, drop]: [f64; 3],
+    is_confirmed: bool,
     remedy: BusRemedy,
 ) -> Diagnostic {
     let remedy = match remedy {
@@ -92,14 +93,16 @@ pub fn bus_too_low(
             )
         }
     };
-    let trace = if stated.field == "back_emf" && emf > LIKELY[1] / 2.0 * volts {
+    let trace = if !is_confirmed && stated.field == "back_emf" && emf > LIKELY[1] / 2.0 * volts {
         "; a peak-to-peak voltage of a trace is written `peak_to_peak`"
     } else {
         ""
     };
     let culprit = if drop > LIKELY[0] * volts {
         resistance
-    } else if emf > LIKELY[1] * volts {
+    } else if is_confirmed && emf > 2.0 * volts {
+        bus
+    } else if !is_confirmed && emf > LIKELY[1] * volts {
         stated
     } else {
         speed

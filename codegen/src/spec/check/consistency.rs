@@ -79,7 +79,9 @@ pub(super) fn check(
     };
     let shape_part = reader.part("emf_shape", String::new);
     let others = others(stated, shape, pole_pairs, &shape_part);
-    let fitting = fitting(others, first, motor, phase);
+    let mut fitting = fitting(others, first, motor, phase);
+    // Another reading must not contradict what agrees with this one.
+    fitting.retain(|(other, _)| agreeing.iter().all(|claim| claim.agrees(other.phase)));
     let implied = first.constant / first.factors[0];
     let stated_part = &stated.given.part;
     let culprit = if !more.is_empty() && failing.iter().all(|claim| claim.agrees(implied)) {

@@ -89,6 +89,7 @@ pub(super) fn check_bus(
         &bus.part,
         [&speed.part, &current.part, &back_emf.part, &resistance],
         [bus.si, emf, drop],
+        motor.emf.len() > 1 || motor.rated_torque.is_some(),
         remedy,
     ));
     Some(())

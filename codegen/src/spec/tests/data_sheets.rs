@@ -140,6 +140,7 @@ fn every_unit_of_an_emf_is_read_by_both_front_ends() {
         (phase / 4.0 * 2.0 * PI, "V/Hz"),
         (30.0 / PI / (2.0 * phase), "rpm/V"),
         (30.0 / PI / (2.0 * phase), "min-1/V"),
+        (30.0 / PI / (2.0 * phase), "min^-1/V"),
         (1.0 / (2.0 * phase), "(rad/s)/V"),
     ] {
         let spec = both("motor", "back_emf", &format!("{value:.9} {unit}"));

@@ -76,7 +76,7 @@ pub const NAMES: &[Name] = &[
     name(&["N"], "mck", &[(X::Newton, 1)], [1.0, 1.0], SI),
     name(&["Hz"], "kMG", &[(X::Hertz, 1)], [1.0, 1.0], SI),
     name(&["rad"], "", &[(X::Radian, 1)], [1.0, 1.0], SI),
-    name(&["s"], "num", &[(X::Second, 1)], [1.0, 1.0], SI),
+    name(&["s", "sec"], "num", &[(X::Second, 1)], [1.0, 1.0], SI),
     name(&["m"], "cm", &[(X::Metre, 1)], [1.0, 1.0], SI),
     name(&["kg"], "", &[(X::Kilogram, 1)], [1.0, 1.0], SI),
     name(&["g"], "", &[(X::Kilogram, 1)], [1.0, 1e3], SI),

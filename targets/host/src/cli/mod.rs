@@ -15,8 +15,8 @@ pub use arguments::{
 };
 pub use failure::Failure;
 pub use output::{
-    note, print_blocks, print_json, print_table, print_text, tell_warnings, warn, wrapped,
-    write_file,
+    note, paragraph, print_blocks, print_json, print_table, print_text, tell_warnings, warn,
+    wrapped_row, write_file,
 };
 pub use progress::{Bar, spinner};
 

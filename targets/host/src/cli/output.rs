@@ -28,13 +28,23 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
 /// Columns of a line that is meant to be read at a glance.
 const COLUMNS: usize = 100;
 
-/// A line in lines of at most [`COLUMNS`], behind the title of the first; a word that is longer stays whole.
-pub fn wrapped(line: &str) -> String {
+/// A row in lines of at most [`COLUMNS`], the further ones below its text.
+pub fn wrapped_row(row: &str) -> String {
+    filled(row, "            ")
+}
+
+/// A paragraph in such lines.
+pub fn paragraph(text: &str) -> String {
+    filled(text, "")
+}
+
+/// A word that is longer than a line stays whole.
+fn filled(text: &str, indent: &str) -> String {
     let options = textwrap::Options::new(COLUMNS)
-        .subsequent_indent("            ")
+        .subsequent_indent(indent)
         .break_words(false)
         .word_splitter(textwrap::WordSplitter::NoHyphenation);
-    textwrap::fill(line, options)
+    textwrap::fill(text, options)
 }
 
 /// Prints lines to stderr, with colours on a terminal (unless `NO_COLOR` is set). There is no place

@@ -1,6 +1,6 @@
 //! `hexagen motors`: the library, and how well each motor's default drive does.
 
-use crate::cli::{Bar, Failure, note, print_json, print_table, print_text};
+use crate::cli::{Bar, Failure, note, paragraph, print_json, print_table, print_text};
 use clap::Args;
 use hexagen_lab::motors::{
     COARSE, LibraryMotor, Limit, RIPPLE, RatedPoint, SPEEDS, TORQUE, library_at_rating,
@@ -8,10 +8,14 @@ use hexagen_lab::motors::{
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 use serde::Serialize;
+use std::f64::consts::PI;
 
 /// Options of `motors`.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Options {
+    /// Print every column: periods, and torque and ripple over speed
+    #[arg(long)]
+    pub all: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -30,13 +34,21 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         return print_json(&Library { motors });
     }
-    print_table(&table(&motors))?;
     let [fine, coarse] = RIPPLE;
-    print_text(&format!(
-        "The default drive at rated torque and nominal bus voltage, by share of the rated speed; deg/Ts: electrical degrees\n\
-         in a control period at rated speed; whole to: speed up to which the bus drives the rating's whole current. Right: torque within {TORQUE} %, ripple at most {fine} % up to {COARSE} deg/Ts, {coarse} % above; else\n\
-         what limits the drive."
-    ))?;
+    let right = format!(
+        "torque within {TORQUE} %, ripple at most {fine} % up to {COARSE} electrical degrees in a control period, {coarse} % above"
+    );
+    if options.all {
+        print_table(&all_columns(&motors))?;
+        print_text(&paragraph(&format!(
+            "The default drive at rated torque and nominal bus voltage, by share of the rated speed. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Limited by: - where the drive is right ({right})."
+        )))?;
+    } else {
+        print_table(&table(&motors))?;
+        print_text(&paragraph(&format!(
+            "Each with its file's controller, at rated torque, simulated. Torque and ripple: the least and the greatest up to rated speed. Limited by: - where the drive is right ({right}). `hexagen check MOTOR` says more of one; --all has every column."
+        )))?;
+    }
     for motor in &motors {
         if let Some(reason) = &motor.reason {
             note(reason);
@@ -45,7 +57,49 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
+/// What a reader looks for first.
 fn table(motors: &[LibraryMotor]) -> Table {
+    let numbers = [
+        "bus V",
+        "rated A",
+        "rated Nm",
+        "rated rpm",
+        "W",
+        "torque %",
+        "ripple %",
+        "limited by",
+    ];
+    let mut table = Table::listed(["motor"], numbers);
+    for motor in motors {
+        let power = motor.rated_torque_nm.zip(motor.rated_rpm);
+        let power = power.map(|(torque, rpm)| torque * rpm * PI / 30.0);
+        let extreme = |of: fn(&RatedPoint) -> Option<f64>, which: fn(f64, f64) -> f64| {
+            let points = motor.points.iter().filter_map(of);
+            points
+                .reduce(which)
+                .map_or("-".to_owned(), |value| format!("{value:.1}"))
+        };
+        table.row([
+            motor.name.clone(),
+            cell(motor.v_bus_v, 1.0),
+            cell(motor.rated_current_a, 1.0),
+            cell(motor.rated_torque_nm, 1.0),
+            cell(motor.rated_rpm, 1.0),
+            cell(power, 1.0),
+            extreme(|point| point.torque_pct, f64::min),
+            extreme(|point| point.ripple_pct, f64::max),
+            limit(motor).to_owned(),
+        ]);
+    }
+    table
+}
+
+/// A number times a scale.
+fn cell(value: Option<f64>, scale: f64) -> String {
+    value.map_or("-".to_owned(), |value| significant(value * scale, 3))
+}
+
+fn all_columns(motors: &[LibraryMotor]) -> Table {
     let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
     let (torque, ripple) = (
         format!("torque % at {speeds} %"),
@@ -64,13 +118,10 @@ fn table(motors: &[LibraryMotor]) -> Table {
             "whole to %",
             &torque,
             &ripple,
-            "right",
+            "limited by",
         ],
     );
     for motor in motors {
-        let number = |value: Option<f64>, scale: f64| {
-            value.map_or("-".to_owned(), |value| significant(value * scale, 3))
-        };
         let points = |of: fn(&RatedPoint) -> Option<f64>| {
             let points = motor.points.iter().map(|point| match of(point) {
                 Some(value) => format!("{value:.1}"),
@@ -83,25 +134,25 @@ fn table(motors: &[LibraryMotor]) -> Table {
             motor
                 .pole_pairs
                 .map_or("-".to_owned(), |pairs| pairs.to_string()),
-            number(motor.v_bus_v, 1.0),
-            number(motor.t_s, 1e6),
-            number(motor.rated_current_a, 1.0),
-            number(motor.rated_torque_nm, 1.0),
-            number(motor.rated_rpm, 1.0),
-            number(motor.degrees_per_period, 1.0),
-            number(motor.envelope_pct, 1.0),
+            cell(motor.v_bus_v, 1.0),
+            cell(motor.t_s, 1e6),
+            cell(motor.rated_current_a, 1.0),
+            cell(motor.rated_torque_nm, 1.0),
+            cell(motor.rated_rpm, 1.0),
+            cell(motor.degrees_per_period, 1.0),
+            cell(motor.envelope_pct, 1.0),
             points(|point| point.torque_pct),
             points(|point| point.ripple_pct),
-            verdict(motor).to_owned(),
+            limit(motor).to_owned(),
         ]);
     }
     table
 }
 
-/// Whether a motor's default drive is right, else what limits it.
-fn verdict(motor: &LibraryMotor) -> &'static str {
+/// What limits a motor's drive, where it is not right.
+fn limit(motor: &LibraryMotor) -> &'static str {
     match motor.limit {
-        _ if motor.is_right => "yes",
+        _ if motor.is_right => "-",
         Some(Limit::BusVoltage) => "bus voltage",
         Some(Limit::Trip) => "trips",
         Some(Limit::ControlPeriod) => "control period",

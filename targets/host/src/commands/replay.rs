@@ -32,7 +32,7 @@ pub struct Options {
 
 /// A replayed log.
 #[derive(Debug, Serialize)]
-struct Periods<'a> {
+struct Replayed<'a> {
     motor: &'a str,
     controller: &'a str,
     /// The period that tripped, and its fault.
@@ -67,7 +67,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         let periods = csv::Reader::from_reader(rows.as_slice()).into_deserialize();
         let periods: Result<_, csv::Error> = periods.collect();
-        return print_json(&Periods {
+        return print_json(&Replayed {
             motor: &drive.motor,
             controller: &drive.variant,
             tripped: replayed

@@ -1,6 +1,6 @@
 //! `hexagen report`: the result table and the page of one motor.
 
-use crate::cli::{Bar, Failure, print_json, print_table, print_text, wrapped};
+use crate::cli::{Bar, Failure, print_json, print_table, print_text, wrapped_row};
 use crate::render;
 use clap::Args;
 use hexagen_lab::report::{results_page, variants_table, verdict};
@@ -92,6 +92,6 @@ fn lines(data: &Results, page: &Path) -> Vec<String> {
         .into_iter()
         .chain(rows)
         // Texts of pages keep numbers and units together.
-        .map(|line| wrapped(&line.replace('\u{a0}', " ")))
+        .map(|line| wrapped_row(&line.replace('\u{a0}', " ")))
         .collect()
 }

@@ -153,7 +153,11 @@ impl Plan {
             links: Vec::new(),
             errors: Vec::new(),
             robustness: None,
-            marks: if self.is_paper { paper_marks() } else { vec![] },
+            marks: if self.is_expected {
+                paper_marks()
+            } else {
+                vec![]
+            },
             notes: self.notes,
         })
     }

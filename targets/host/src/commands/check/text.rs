@@ -1,6 +1,6 @@
 //! The lines of `hexagen check`.
 
-use crate::cli::wrapped;
+use crate::cli::wrapped_row;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{CurrentSensing, InverterSpec, MotorSpec, RotorSensing};
 use hexagen_lab::engine::Prepared;
@@ -40,7 +40,7 @@ pub(super) fn lines(
     [format!("{}: {}", judgement.motor, judgement.verdict)]
         .into_iter()
         .chain(rows)
-        .map(|line| wrapped(&line))
+        .map(|line| wrapped_row(&line))
         .collect()
 }
 
@@ -68,8 +68,9 @@ fn of_motor(motor: &MotorSpec) -> String {
             format!("{} kg m2", significant(inertia, 3))
         });
     format!(
-        "{} pole pairs, {}, {} per phase; {}, {inertia}",
+        "{} pole pair{}, {}, {} per phase; {}, {inertia}",
         motor.pole_pairs,
+        if motor.pole_pairs == 1 { "" } else { "s" },
         engineering(motor.resistance, "ohm"),
         engineering(motor.inductance, "H"),
         engineering(motor.rated_torque_constant(), "Nm/A"),
@@ -105,7 +106,7 @@ fn of_sensing(judgement: &Judgement, inverter: &InverterSpec) -> String {
         time => format!("dead time {}", engineering(time, "s")),
     };
     format!(
-        "{place}, {} bits to {}, {} a count, {} at rated current; {dead_time}",
+        "{place}, {} bits to {}, {} a count, {} at rating; {dead_time}",
         inverter.adc_bits,
         engineering(inverter.shown_current(), "A"),
         engineering(inverter.adc_gain.abs(), "A"),
