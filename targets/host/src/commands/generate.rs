@@ -72,9 +72,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             Ok(())
         }
         (None, [File { text, .. }]) => print_text(text),
-        (None, _) => Err(Failure::Argument(
-            "the text is of several files; add `--out DIR`, or `--json`".to_owned(),
-        )),
+        (None, _) => Err(Failure::Argument(format!(
+            "`--emit {}` makes several files; add `--out DIR`, or `--json`",
+            options.emit.word()
+        ))),
     }
 }
 

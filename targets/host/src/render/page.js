@@ -53,6 +53,11 @@ const plots = [];
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 
+// Measures texts as plots write them.
+const pen = document.createElement("canvas").getContext("2d");
+pen.font = FONT;
+const widthOf = (text) => pen.measureText(text).width;
+
 // A colour of the data in the scheme of the page: the style sheet knows those that differ.
 function ink(color) {
   const name = "--c" + color.slice(1);
@@ -130,13 +135,11 @@ function table(plot) {
 
 // Rows for the marks above a plot, so that no text crosses another or another's line.
 function stacked(plot, width) {
-  const context = document.createElement("canvas").getContext("2d");
-  context.font = FONT;
   const [from, to] = plot.x.range;
   const placed = [];
   for (const mark of plot.marks) {
     const end = ((mark.at - from) / (to - from)) * width;
-    const start = end - context.measureText(mark.text).width - 8;
+    const start = end - widthOf(mark.text) - 8;
     const under = placed.filter((other) => other.end > start);
     mark.row = under.reduce((row, other) => Math.max(row, other.mark.row + 1), 0);
     placed.push({ mark, end });
@@ -158,10 +161,8 @@ function axis(of, isUpright) {
     space: isUpright ? 26 : 44,
   };
   if (isUpright) {
-    options.size = (u, labels) => {
-      const longest = Math.max(0, ...(labels || []).map((label) => String(label ?? "").length));
-      return 14 + 7 * longest;
-    };
+    // A tick, a gap, the longest label, and a gap before the title.
+    options.size = (u, labels) => 4 + 5 + Math.ceil(Math.max(0, ...(labels ?? []).map(widthOf))) + 4;
   } else {
     options.size = 30;
     if (of.title.endsWith("degrees")) options.incrs = [0.1, 0.2, 0.5, 1, 2, 5, 10, 30, 60, 90, 180];
@@ -200,19 +201,25 @@ function scales(plot) {
   };
 }
 
-// What uPlot is to draw, at a width in pixels.
-function options(plot, width) {
+// Height of a plot without its legend, and of what stands above its area, at a width; in pixels.
+function heightsAt(plot, width) {
   const [wide, high] = plot.size;
-  const isPlane = plot.series.length === 0;
   const rows = stacked(plot, width - 76);
   const hasLabels = plot.elements.some((of) => of.kind === "label") || plot.bars.length > 0;
   const above = hasLabels ? 20 : 10;
   const top = Math.max(above, rows * ROW + 6);
   // The axes take 50 pixels below, and about 64 at the side.
   const height = plot.square ? width - 64 - 12 + 50 + top : Math.max(230, (width * high) / wide);
+  return { height: Math.round(height), top };
+}
+
+// What uPlot is to draw, at a width in pixels.
+function options(plot, width) {
+  const isPlane = plot.series.length === 0;
+  const { height, top } = heightsAt(plot, width);
   return {
     width,
-    height: Math.round(height),
+    height,
     padding: [top, 12, 0, 4],
     scales: scales(plot),
     axes: [axis(plot.x, false), axis(plot.y, true)],
@@ -412,9 +419,18 @@ function ofLabel(u, of) {
 function readout(u, plot) {
   const line = u.root.querySelector(".readout");
   if (!line) return;
-  const value = (at, of, scale) => (at >= 0 ? digits(u.posToVal(at, scale), of) : "\u2013");
-  const [x, y] = [value(u.cursor.left, plot.x, "x"), value(u.cursor.top, plot.y, "y")];
-  line.textContent = `${plot.x.title}: ${x}, ${plot.y.title}: ${y}`;
+  const value = (at, scale) => (at >= 0 ? u.posToVal(at, scale) : null);
+  line.textContent = toldOf(plot, value(u.cursor.left, "x"), value(u.cursor.top, "y"));
+}
+
+const toldOf = ({ x, y }, ...at) => `${x.title}: ${digits(at[0], x)}, ${y.title}: ${digits(at[1], y)}`;
+
+// A line for what is told of the pointer's place, without one yet.
+function lineOf(plot) {
+  const line = document.createElement("p");
+  line.className = "readout";
+  line.textContent = toldOf(plot);
+  return line;
 }
 
 // The name of the nearest tick.
@@ -528,23 +544,45 @@ function toggled(u, plot, index, change) {
   if (of.variant != null) switchVariant(of.variant, change.show);
 }
 
+// A legend as uPlot writes it, before it tells values.
+function legendOf(plot) {
+  const legend = document.createElement("table");
+  legend.className = "u-legend u-inline u-live";
+  for (const name of [plot.x.title, ...plot.series.map((of) => of.name)]) {
+    const row = legend.insertRow();
+    row.className = "u-series";
+    row.innerHTML = '<th><div class="u-marker"></div><div class="u-label"></div></th><td class="u-value">\u2013</td>';
+    row.querySelector(".u-label").textContent = name;
+  }
+  return legend;
+}
+
+// Keeps the room of a plot that is not drawn yet: if plots grew on the way to a link's heading, the
+// link would miss it. Only the browser knows how many lines a legend has.
+function reserve({ holder, plot, width }) {
+  holder.querySelector(".reserved")?.remove();
+  if (width === 0) return;
+  const root = document.createElement("div");
+  root.className = "uplot reserved";
+  const area = document.createElement("div");
+  Object.assign(area.style, { width: `${width}px`, height: `${heightsAt(plot, width).height}px` });
+  root.append(area, plot.series.length > 0 ? legendOf(plot) : lineOf(plot));
+  holder.append(root);
+}
+
 // Draws a plot, or draws it anew: another width, another scheme.
 function draw(entry) {
-  const width = Math.floor(entry.holder.clientWidth);
+  const { holder, plot, width } = entry;
   if (width === 0) return;
-  entry.width = width;
+  holder.querySelector(".reserved")?.remove();
   entry.u?.destroy();
-  const { plot } = entry;
-  entry.u = new uPlot(options(plot, width), table(plot), entry.holder);
+  entry.u = new uPlot(options(plot, width), table(plot), holder);
+  // uPlot does so later; until then the page would be shorter.
+  entry.u.root.querySelector(".u-wrap").style.height = `${entry.u.height}px`;
   watchNames(entry.u, plot);
   watchKeys(entry);
   watchFingers(entry);
-  if (plot.series.length === 0) {
-    const line = document.createElement("p");
-    line.className = "readout";
-    entry.u.root.append(line);
-    readout(entry.u, plot);
-  }
+  if (plot.series.length === 0) entry.u.root.append(lineOf(plot));
 }
 
 // Draws plots when they come near the screen: a page has dozens.
@@ -561,14 +599,19 @@ function watchPlots() {
   const resized = new ResizeObserver((seen) => {
     for (const { target } of seen) {
       const entry = plots.find(({ holder }) => holder === target);
-      if (entry.u && Math.floor(target.clientWidth) !== entry.width) draw(entry);
+      const width = Math.floor(target.clientWidth);
+      if (width === entry.width) continue;
+      entry.width = width;
+      if (entry.u) draw(entry);
+      else reserve(entry);
     }
   });
   for (const holder of document.querySelectorAll("div.plot")) {
-    const plot = prepared(holder);
-    const [wide, high] = plot.size;
-    holder.style.setProperty("--shape", plot.square ? "1" : `${wide} / ${high}`);
-    plots.push({ holder, plot });
+    plots.push({ holder, plot: prepared(holder), width: Math.floor(holder.clientWidth) });
+  }
+  // Widths are read before: each that is read after a change costs a layout of the page.
+  plots.forEach(reserve);
+  for (const { holder } of plots) {
     near.observe(holder);
     resized.observe(holder);
   }
@@ -659,6 +702,21 @@ function sort(heading) {
   (bodies.length > 1 ? table : bodies[0]).append(...parts);
 }
 
+// Names of rows that stay readable while a table scrolls sideways: lines break between settings, else
+// after a key, never inside of a word; a group's name can move in its cell, as wide as the table.
+function nameRows() {
+  for (const code of document.querySelectorAll("th small code")) {
+    const settings = code.innerHTML.split(/<wbr>|(?<=:)/);
+    const breakable = settings.map((of) => `<span>${of.replace("=", "=<wbr>")}</span>`);
+    code.innerHTML = breakable.join("");
+  }
+  for (const cell of document.querySelectorAll("tbody th[colspan]")) {
+    const name = document.createElement("span");
+    name.append(...cell.childNodes);
+    cell.append(name);
+  }
+}
+
 function watchTables() {
   for (const table of document.querySelectorAll("table")) {
     const rows = table.tBodies.length > 1 ? table.tBodies.length : table.tBodies[0]?.rows.length;
@@ -727,6 +785,7 @@ function watchLinks() {
   }
 }
 
+nameRows();
 watchPlots();
 watchSwitches();
 watchLinks();

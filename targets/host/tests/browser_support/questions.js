@@ -91,14 +91,40 @@ function groundOf(node) {
   return "rgb(255, 255, 255)";
 }
 
+// The contrast of a text, faded as much as it and all around it are.
+function contrastOf(node) {
+  let opacity = 1;
+  for (let at = node; at; at = at.parentElement) opacity *= getComputedStyle(at).opacity;
+  const ground = groundOf(node);
+  const [ink, behind] = [getComputedStyle(node).color, ground].map((color) => color.match(/[\d.]+/g).slice(0, 3));
+  const faded = ink.map((value, k) => opacity * value + (1 - opacity) * behind[k]);
+  const lights = [luminance(`rgb(${faded})`), luminance(ground)].sort((a, b) => a - b);
+  return (lights[1] + 0.05) / (lights[0] + 0.05);
+}
+
 // Texts with less contrast than WCAG's 4.5 (3 for what is muted on purpose).
 function faintTexts() {
   const nodes = [...document.querySelectorAll("h1, h2, h3, p, td, th, a, summary, figcaption, i, .label")];
-  const faint = nodes.filter(isSeen).filter((node) => {
-    const lights = [luminance(getComputedStyle(node).color), luminance(groundOf(node))].sort((a, b) => a - b);
-    return (lights[1] + 0.05) / (lights[0] + 0.05) < 4;
-  });
+  const faint = nodes.filter(isSeen).filter((node) => contrastOf(node) < 4);
   return faint.map(about).slice(0, 10);
+}
+
+// Names of lines and variants that are illegible while they are off, or look as if they were on.
+async function wrongWhenOff() {
+  const names = [...document.querySelectorAll(`${TESTED.names}, ${TESTED.switches}`)].filter(isSeen);
+  const wrong = [];
+  for (const name of names) {
+    const text = name.querySelector(".u-label, span");
+    const look = () => [contrastOf(text), getComputedStyle(text).textDecorationLine].join();
+    const on = look();
+    name.click();
+    await null;
+    const contrast = contrastOf(text);
+    if (contrast < 3 || look() === on) wrong.push(`${about(name)}: ${contrast.toFixed(1)}`);
+    name.click();
+    await null;
+  }
+  return wrong.slice(0, 10);
 }
 
 const isDark = () =>
@@ -130,6 +156,58 @@ function misstatedTicks() {
     }
   }
   return wrong.slice(0, 10);
+}
+
+// Texts on a plot's canvas, with the boxes that their ink covers. Their pixels are the page's: the
+// tests' screen has one for each.
+async function written({ u }) {
+  const { ctx } = u;
+  const texts = [];
+  ctx.fillText = (text, x, y) => {
+    const of = ctx.measureText(text);
+    const ends = [
+      [x - of.actualBoundingBoxLeft, y - of.actualBoundingBoxAscent],
+      [x + of.actualBoundingBoxRight, y + of.actualBoundingBoxDescent],
+    ];
+    const [one, other] = ends.map(([x, y]) => ctx.getTransform().transformPoint({ x, y }));
+    const [left, right] = [one.x, other.x].sort((a, b) => a - b);
+    const [top, bottom] = [one.y, other.y].sort((a, b) => a - b);
+    texts.push({ text, left, top, right, bottom });
+  };
+  u.redraw();
+  await null;
+  delete ctx.fillText;
+  return texts;
+}
+
+// Titles and ticks of axes with less than two pixels between them, or cut at the edge of their plot.
+async function crowdedAxes() {
+  const crowded = [];
+  for (const entry of plots) {
+    const { u, plot, holder } = entry;
+    const texts = (await written(entry)).filter(({ text }) => text !== "");
+    const isNear = (a, b) =>
+      a.left < b.right + 2 && b.left < a.right + 2 && a.top < b.bottom + 2 && b.top < a.bottom + 2;
+    const isCut = (of) => of.left < 0 || of.top < 0 || of.right > u.width || of.bottom > u.height;
+    const tell = (...of) => crowded.push(`${of.map(({ text }) => text).join(" and ")} of ${holder.ariaLabel}`);
+    texts.forEach((a, place) => {
+      if (isCut(a)) tell(a);
+      texts.slice(place + 1).filter((b) => isNear(a, b)).forEach((b) => tell(a, b));
+    });
+    const titles = [plot.x, plot.y].filter(({ title }) => !texts.some(({ text }) => text === title));
+    crowded.push(...titles.map(({ title }) => `no ${title} at ${holder.ariaLabel}`));
+  }
+  return crowded.slice(0, 10);
+}
+
+// Plots whose room was another one before they were drawn.
+async function grownPlots() {
+  const high = () => plots.map(({ holder }) => holder.getBoundingClientRect().height);
+  const before = high();
+  await drawAll();
+  const after = high();
+  const grown = plots.filter((_, k) => Math.abs(after[k] - before[k]) >= 0.5);
+  return grown.map(({ holder }) => holder.ariaLabel).slice(0, 10);
 }
 
 // Names in legends that switch nothing, or leave the drawing as it was.
@@ -337,3 +415,65 @@ const deadAnchors = () =>
   [...document.querySelectorAll("a[href^='#']")]
     .filter((link) => !document.getElementById(link.hash.slice(1)))
     .map(about);
+
+// Headings that a link of the navigation misses by more than a few pixels, from the top of the page.
+async function missedHeadings() {
+  const missed = [];
+  for (const link of document.querySelectorAll("nav a")) {
+    scrollTo({ top: 0, behavior: "instant" });
+    await settled();
+    link.click();
+    await scrolled();
+    const { top } = document.getElementById(link.hash.slice(1)).querySelector("h2").getBoundingClientRect();
+    const isEnd = scrollY + innerHeight > document.documentElement.scrollHeight - 2;
+    if (Math.abs(top) > 4 && !(isEnd && top > 0 && top < innerHeight)) missed.push(`${about(link)}: ${top}`);
+  }
+  return missed;
+}
+
+// Waits until the page has stood still for some frames.
+async function scrolled() {
+  for (let still = 0, before = scrollY; still < 6; still = scrollY === before ? still + 1 : 0) {
+    before = scrollY;
+    await settled();
+  }
+}
+
+// Tables -------------------------------------------------------------------------------------------
+
+const wideTables = () =>
+  [...document.querySelectorAll(".scroll")].filter((box) => box.scrollWidth > box.clientWidth + 1);
+
+// Rows of wide tables that do not keep their names beside at least two columns of figures.
+async function namelessRows() {
+  const nameless = [];
+  for (const box of wideTables()) {
+    box.scrollLeft = box.scrollWidth;
+    await settled();
+    const [cell] = box.querySelector("thead tr").cells;
+    const held = cell.getBoundingClientRect();
+    const { left, right } = box.getBoundingClientRect();
+    const figures = [...box.querySelectorAll("thead th.number")].map((of) => of.getBoundingClientRect());
+    const seen = figures.filter((of) => of.left >= held.right - 1 && of.right <= right + 1);
+    if (Math.abs(held.left - left) > 1 || seen.length < Math.min(2, figures.length)) nameless.push(about(box));
+    box.scrollLeft = 0;
+  }
+  return nameless;
+}
+
+// Words of rows' names that break.
+function brokenWords() {
+  const broken = [];
+  for (const cell of document.querySelectorAll("tbody th, tbody td:first-child")) {
+    const texts = document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) {
+      for (const { 0: word, index } of texts.currentNode.data.matchAll(/[\p{L}\d_]+/gu)) {
+        const range = document.createRange();
+        range.setStart(texts.currentNode, index);
+        range.setEnd(texts.currentNode, index + word.length);
+        if (range.getClientRects().length > 1) broken.push(`${word} of ${about(cell)}`);
+      }
+    }
+  }
+  return broken.slice(0, 10);
+}

@@ -115,8 +115,12 @@ fn options_out_of_range_or_at_odds_are_told() {
             "is a voltage",
         ),
         (
-            &["simulate", PAPER, "--rpm", "1", "--dead-time", "1"],
+            &["simulate", PAPER, "--rpm", "1", "--dead-time", "1s"],
             "dead_time",
+        ),
+        (
+            &["simulate", PAPER, "--rpm", "1", "--dead-time", "500"],
+            "`500` has no unit; write it like `500s` or `500ms`",
         ),
         (
             &["simulate", PAPER, "--rpm", "1", "--scale-l", "-1"],

@@ -111,7 +111,8 @@ fn a_new_file_on_a_board_leaves_out_what_the_board_states() {
     for field in OF_BOARD {
         assert!(!text.contains(&format!("\n{field}")), "{field}: {text}");
     }
-    assert!(!text.contains("hall_timer_clock"), "{text}");
+    assert!(!text.contains("\nhall_timer_clock"), "{text}");
+    assert!(text.contains("\n# amplifier_gain = "), "{text}");
     let said = run(["check", path]);
     assert!(said.stdout.contains("29.37 mA a count"), "{said:?}");
     let other = folder.path().join("other.toml");

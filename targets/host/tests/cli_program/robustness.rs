@@ -140,27 +140,27 @@ fn no_default_controller_that_modulates_oscillates_under_any_disturbance() {
 #[test]
 fn a_disturbed_plant_is_the_one_that_simulate_has() {
     // Options that all plants have in common are kept: here a bus voltage.
-    let sheet = run(SHEET.iter().chain(&["--json", "--v-bus", "46"])).json();
+    let sheet = run(SHEET.iter().chain(&["--json", "--v-bus", "46V"])).json();
     for (name, options) in [
-        ("none", &["--v-bus", "46"][..]),
-        ("L +30 %", &["--v-bus", "46", "--scale-l", "1.3"]),
-        ("bus -10 %", &["--v-bus", "41.4"]),
-        ("dead time 1 us", &["--v-bus", "46", "--dead-time", "1us"]),
+        ("none", &["--v-bus", "46V"][..]),
+        ("L +30 %", &["--v-bus", "46V", "--scale-l", "1.3"]),
+        ("bus -10 %", &["--v-bus", "41.4V"]),
+        ("dead time 1 us", &["--v-bus", "46V", "--dead-time", "1us"]),
         (
             "Hall +5, -5, 0 deg",
-            &["--v-bus", "46", "--hall-error", "5,-5,0"],
+            &["--v-bus", "46V", "--hall-error", "5deg,-5deg,0"],
         ),
         (
             "10-bit ADC, 200 mA off",
-            &["--v-bus", "46", "--adc-bits", "10", "--adc-offset", "0.2A"],
+            &["--v-bus", "46V", "--adc-bits", "10", "--adc-offset", "0.2A"],
         ),
         (
             "current sensors 2 % apart",
-            &["--v-bus", "46", "--scale-adc", "1.01,0.99"],
+            &["--v-bus", "46V", "--scale-adc", "1.01,0.99"],
         ),
         (
             "ADC noise 1 count rms",
-            &["--v-bus", "46", "--adc-noise", "1"],
+            &["--v-bus", "46V", "--adc-noise", "1"],
         ),
     ] {
         let simulated = ["simulate", PAPER, "--rpm", "1500", "--controller", HASTY];

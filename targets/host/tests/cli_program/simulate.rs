@@ -284,7 +284,7 @@ fn a_percentage_of_nothing_is_absent() {
     let said = run(["simulate", PAPER, "--rpm", "0", "--start-angle", "0.1"]);
     assert!(
         said.stdout
-            .contains("| current distortion          |       - |"),
+            .contains("| current distortion                       |       - |"),
         "{}",
         said.stdout
     );

@@ -7,13 +7,15 @@ use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
-use hexagen_codegen::timing::StepTime;
 
 use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
-use hexagen_lab::engine::{EngineKind, Model, MotorSource, PlantOptions, SelectedMotor, prepare};
+use hexagen_lab::engine::{
+    EngineKind, Model, MotorSource, PlantOptions, Prepared, SelectedMotor, prepare,
+};
 use hexagen_lab::envelope::TorqueBounds;
+use hexagen_lab::judgement::Judgement;
 use hexagen_lab::plant::{PlantParams, Truth};
 use hexagen_lab::results::{
     Capture, DesignRow, ErrorsSeen, GeneratedTexts, Own, PAPER_MOTOR, Record, Results, Run,
@@ -400,7 +402,8 @@ pub fn data() -> Results {
         },
         own: Some(Own {
             variant: 0,
-            times: times(),
+            judgement: Judgement::of(&own_drive()).expect("runs"),
+            times: own_drive().generated.interface.times,
         }),
         links: links(&paper_motor(), &variants[0].generated.as_ref().expect("is shown").rust),
         variants,
@@ -417,8 +420,7 @@ pub fn data() -> Results {
 }
 
 /// Times of the default drive's step.
-fn times() -> Vec<StepTime> {
+fn own_drive() -> Prepared {
     let motor = MotorSource::of_library("trivedi-keshri-660w").expect("a motor");
-    let drive = prepare(&motor, Some("pdcc")).expect("a drive");
-    drive.generated.interface.times
+    prepare(&motor, Some("pdcc")).expect("a drive")
 }

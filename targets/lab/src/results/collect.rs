@@ -27,7 +27,6 @@ pub struct Plan {
     own: Prepared,
     rows: Vec<Planned>,
     notes: Vec<String>,
-    is_paper: bool,
     is_expected: bool,
 }
 
@@ -54,7 +53,6 @@ impl Plan {
             own,
             rows,
             notes,
-            is_paper,
             is_expected: false,
         })
     }
@@ -77,7 +75,6 @@ impl Plan {
             own,
             rows,
             notes,
-            is_paper: true,
             is_expected: true,
         })
     }
