@@ -234,6 +234,27 @@ fn readme_shows_emitted_code() {
     }
 }
 
+/// The README's interrupt is that of a program, function by function.
+#[test]
+fn readme_shows_the_interrupt_of_a_board() {
+    let readme = include_str!("../../README.md");
+    let shown = readme.split("```rust,ignore\n").nth(1);
+    let shown = shown.and_then(|rest| rest.split("```").next());
+    let program = [
+        include_str!("../../targets/frameworks/vesc-4/src/main.rs"),
+        include_str!("../../targets/frameworks/vesc-4/src/board.rs"),
+    ]
+    .concat();
+    let functions: Vec<&str> = shown.expect("is there").split("\n\n").collect();
+    assert_eq!(functions.len(), 3);
+    for function in functions {
+        assert!(
+            program.contains(function.trim_end()),
+            "not in the program:\n{function}"
+        );
+    }
+}
+
 /// The default drive, and the one without an observer, are short enough to read: their lines without
 /// those of tables.
 #[test]

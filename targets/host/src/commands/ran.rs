@@ -27,8 +27,14 @@ impl Ran {
         }
     }
 
-    /// `hub, pdcc (Fixed)`
+    /// `hub, pdcc (fixed point)`
     pub fn name(&self) -> String {
-        format!("{}, {} ({:?})", self.motor, self.controller, self.model)
+        let Self {
+            motor,
+            controller,
+            model,
+            ..
+        } = self;
+        format!("{motor}, {controller} ({})", model.text())
     }
 }

@@ -257,10 +257,10 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         .engine
         .map_or(String::new(), |engine| format!(", {}", engine.name()));
     print_text(&format!(
-        "{}, {} ({:?}{engine}): {} Nm at {} rpm",
+        "{}, {} ({}{engine}): {} Nm at {} rpm",
         outcome.ran.motor,
         outcome.ran.controller,
-        outcome.ran.model,
+        outcome.ran.model.text(),
         significant(outcome.torque_nm, 4),
         outcome.rpm
     ))?;

@@ -132,7 +132,7 @@ fn table(results: &[Checked]) -> Table {
             "Msteps/s/core",
             "control %",
             "limited %",
-            "past reach %",
+            "saturated %",
             "commutating %",
             "angle %",
             "backward %",

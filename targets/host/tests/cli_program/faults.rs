@@ -66,7 +66,7 @@ fn the_table_says_what_trips_by_what_and_what_follows() {
     let said = run(["faults", PAPER, "--controller", "pi-pwm"]);
     assert_eq!(said.code, 0, "{said:?}");
     for part in [
-        "trivedi-keshri-660w, pi-pwm (Fixed): one thing breaks at a time",
+        "trivedi-keshri-660w, pi-pwm (fixed point): one thing breaks at a time",
         "| what breaks",
         "| current sensor a: stuck at the lowest count       | 8 of 8 | ADC range",
         "| nothing broken:",

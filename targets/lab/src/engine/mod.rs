@@ -41,6 +41,17 @@ pub enum Model {
     Ideal,
 }
 
+impl Model {
+    /// Text for reports.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed point",
+            Self::BitTrue => "bit-true model",
+            Self::Ideal => "floating point",
+        }
+    }
+}
+
 /// Engine of the fixed-point program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
