@@ -140,7 +140,7 @@ fn rotor_sensor(spec: &Spec) -> Vec<String> {
         RotorSensing::Angle(sensor) => vec![
             String::new(),
             format!(
-                "A sample has an angle ([`Sample::with_angle`](::hexagen::Sample::with_angle)), 2^32 for a turn of the sensor: `theta_e` is {} times it, plus {} deg.",
+                "A sample has an angle (`Sample::with_angle`), 2^32 for a turn of the sensor: `theta_e` is {} times it, plus {} deg.",
                 sensor.turns,
                 significant(sensor.offset_deg)
             ),

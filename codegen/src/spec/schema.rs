@@ -48,7 +48,7 @@ pub(crate) const MOTOR: &[Rule] = &[
         &[D::SpeedConstant],
         f64::MIN_POSITIVE,
         f64::MAX,
-        "58 rpm/V",
+        "58 rpm/V block_mean",
     ),
     word("emf_shape", "trapezoidal"),
     quantity("flat_top", &[D::Angle], 1.0, 179.0, "120 deg"),

@@ -94,7 +94,8 @@ impl Unit {
             .find(|(known, _)| *known == inverse.dimension && dimensions.contains(known))?;
         let known = Self::from_symbol(spellings.first()?)?;
         let value = inverse.to_si(1.0 / value) / known.to_si(1.0);
-        Some(engineering(value, &known.symbol))
+        let is_plausible = (1e-12..1e12).contains(&value);
+        is_plausible.then(|| engineering(value, &known.symbol))
     }
 
     /// The known spelling of one of some quantities closest to an unknown one, if any is close: a

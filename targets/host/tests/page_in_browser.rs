@@ -6,7 +6,7 @@ mod browser_support;
 mod report_support;
 mod reproduction_support;
 
-use browser_support::{Open, open};
+use browser_support::{Open, load, open};
 use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
     MouseMoved, MousePressed, MouseReleased,
 };
@@ -45,15 +45,20 @@ fn both(width: u32, scheme: &str) -> impl Iterator<Item = Open> {
 /// Opens a page's file at each width, where nothing overlaps.
 fn assert_nothing_overlaps(file: &Path) {
     for width in [390, 768, 1280] {
-        let Some(page) = open(file, width, "light") else {
+        let Some(page) = load(file, width, "light") else {
             return;
         };
+        // Draws them all.
+        page.assert_none("grownPlots()");
         for unfolded in [false, true] {
             page.ask(&format!("unfold({unfolded})"));
             page.assert_none("faults()");
         }
         page.assert_none("undrawn()");
         page.assert_none("misstatedTicks()");
+        page.assert_none("crowdedAxes()");
+        page.assert_none("namelessRows()");
+        page.assert_none("brokenWords()");
         page.assert_no_errors();
     }
 }
@@ -85,11 +90,35 @@ fn every_motors_page_is_small_and_nothing_overlaps() {
 }
 
 #[test]
-fn the_dark_pages_are_legible() {
-    for page in both(1280, "dark") {
-        page.assert_none("faintTexts()");
-        assert_eq!(page.ask("isDark()"), Value::from(true));
-        page.assert_no_errors();
+fn links_of_the_navigation_lead_to_their_headings() {
+    for file in [&*REPORT, &*EXPERIMENT] {
+        for width in [390, 800, 1280] {
+            let Some(page) = load(file, width, "light") else {
+                return;
+            };
+            let links = page.ask("document.querySelectorAll('nav a').length");
+            let links = links.as_u64().expect("a number");
+            assert!(links > 10, "{links} links");
+            // The first click scrolls past plots that nobody has seen yet. Each scroll takes a second: the
+            // others jump.
+            for link in (0..links).rev() {
+                let is_first = link + 1 == links;
+                page.assert_none(&format!("missedHeading({link}, {is_first})"));
+            }
+            page.assert_no_errors();
+        }
+    }
+}
+
+#[test]
+fn the_pages_are_legible_in_both_schemes() {
+    for (scheme, is_dark) in [("light", false), ("dark", true)] {
+        for page in both(1280, scheme) {
+            page.assert_none("faintTexts()");
+            page.assert_none("wrongWhenOff()");
+            assert_eq!(page.ask("isDark()"), Value::from(is_dark));
+            page.assert_no_errors();
+        }
     }
 }
 

@@ -33,7 +33,7 @@ fn every_section_is_there_and_linked() {
         ("robustness", "Robustness"),
         ("code", "Specification, formulas and emitted code"),
         ("data-sheet", "Data sheet"),
-        ("spec", "Specification"),
+        ("spec", "Normalised specification"),
     ] {
         let section = format!("<section id=\"{id}\"><h2>{title}</h2>");
         assert!(PAGE.contains(&section), "{section}");

@@ -10,7 +10,7 @@ use crate::text::significant;
 use crate::times::Time;
 use hexagen_codegen::design::Envelope;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::RotorSensing;
+use hexagen_codegen::spec::{RotorSensing, Spec};
 use hexagen_codegen::timing::StepTime;
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ const RIPPLE: f64 = 7.0;
 /// Least torque at rated speed of a drive that works, percent.
 const LEAST_TORQUE: f64 = 50.0;
 
-/// Torque that is held, percent.
+/// Torque that is held, percent. `limit` looks for the speed where a torque ends, and takes 3 %.
 const HELD: f64 = 99.0;
 
 /// Fewest ADC counts of the rated current for a smooth current.
@@ -65,7 +65,7 @@ pub struct Judgement {
     pub motor: String,
     /// Controller variant.
     pub controller: String,
-    /// Whether it neither trips nor falls short of its torque at rated speed.
+    /// Whether it neither trips on its nominal bus nor loses half its torque up to rated speed.
     pub works: bool,
     /// The verdict in words.
     pub verdict: String,
@@ -148,35 +148,37 @@ impl Judgement {
     }
 
     fn judge(&self, drive: &Prepared) -> (bool, String) {
-        if let Some(trip) = self.points.iter().find_map(|point| point.tripped) {
+        let mut nominal = self.points.iter().take(SPEEDS.len());
+        if let Some(trip) = nominal.find_map(|point| point.tripped) {
             return (false, format!("does not work: {trip}"));
         }
         let [slow, rated, lowest @ ..] = self.points.as_slice() else {
             return (false, "does not work: it was not run".to_owned());
         };
-        if !slow.is_held() {
-            let left = self.left(slow);
-            return (
-                false,
-                format!("does not work: even at {:.0} rpm {left}", slow.rpm),
-            );
+        let slowly = format!("at {:.0} rpm {}", slow.rpm, self.left(slow));
+        if slow.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
+            return (false, format!("does not work: even {slowly}"));
         }
         let left = format!("at rated speed {}", self.left(rated));
         if rated.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
             return (false, format!("does not work: {left}"));
         }
         let mut buts = Vec::new();
+        if self.torque_nm < HELD / 100.0 * drive.rated_torque() {
+            buts.push(format!(
+                "`max_current` allows {} of the rated {} only",
+                engineering(self.torque_nm, "Nm"),
+                engineering(drive.rated_torque(), "Nm")
+            ));
+        }
+        if !slow.is_held() {
+            buts.push(slowly);
+        }
         if !rated.is_held() {
             buts.push(left);
         }
-        buts.extend(lowest.iter().filter(|point| !point.is_held()).map(|point| {
-            format!(
-                "on a bus of {} {} % of the torque is left there",
-                engineering(point.bus_v, "V"),
-                significant(point.torque_pct, 3)
-            )
-        }));
-        buts.extend(self.rippling(&drive.spec.inverter.rotor_sensing));
+        buts.extend(lowest.iter().filter_map(Point::lost_on_bus));
+        buts.extend(self.rippling(&drive.spec));
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
@@ -196,15 +198,16 @@ impl Judgement {
     }
 
     /// The greatest ripple on the nominal bus, if it is worth a word.
-    fn rippling(&self, rotor: &RotorSensing) -> Option<String> {
+    fn rippling(&self, spec: &Spec) -> Option<String> {
         let nominal = self.points.iter().take(SPEEDS.len());
         let ripples = nominal.filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
         let (rpm, ripple) = ripples.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
-        let finer = match rotor {
-            RotorSensing::SampledHalls => {
-                " (`hall_timer_clock`, a timer of the Hall edges, may lower it)"
-            }
-            RotorSensing::TimedHalls { .. } | RotorSensing::Angle(_) => "",
+        let is_modulated = ["pdcc", "pi-pwm", "p-pwm"].contains(&spec.controller.kind());
+        let is_sampled = spec.inverter.rotor_sensing == RotorSensing::SampledHalls;
+        let finer = if is_modulated && is_sampled {
+            " (`hall_timer_clock`, a timer of the Hall edges, may lower it)"
+        } else {
+            ""
         };
         let text = format!(
             "the torque ripples by {} % at {rpm:.0} rpm{finer}",
@@ -229,6 +232,21 @@ impl Judgement {
 }
 
 impl Point {
+    /// What a bus leaves that does not drive the whole torque.
+    fn lost_on_bus(&self) -> Option<String> {
+        let bus = engineering(self.bus_v, "V");
+        match self.torque_pct {
+            _ if self.is_held() => None,
+            Some(torque) if torque > 0.0 => {
+                let torque = significant(torque, 3);
+                Some(format!(
+                    "on a bus of {bus} {torque} % of the torque is left there"
+                ))
+            }
+            _ => Some(format!("a bus of {bus} does not drive it at rated speed")),
+        }
+    }
+
     fn is_held(&self) -> bool {
         self.torque_pct.is_some_and(|torque| torque >= HELD)
     }

@@ -23,21 +23,28 @@ fn narrow(range: &Part) -> String {
     }
 }
 
-/// The current sensors do not reach the rated current, which is the largest set-point by default; `reach`, and the
-/// largest set-point `most` that leaves room to trip: ampere.
-pub fn adc_range_too_small(range: &Part, rated: &Part, [reach, most]: [f64; 2]) -> Diagnostic {
+/// The current sensors do not reach the rated current, which the largest set-point is at least by default;
+/// `reach`, and the largest set-point `most` that leaves room to trip, if it is known: ampere.
+pub fn adc_range_too_small(
+    range: &Part,
+    rated: &Part,
+    reach: f64,
+    most: Option<f64>,
+) -> Diagnostic {
+    let most = most.map_or(String::new(), |most| {
+        format!(" of at most {}", engineering(at_most(most), "A"))
+    });
     with_parts(
         Diagnostic::new(
             Code::AdcRangeTooSmall,
             &range.location,
             format!(
-                "`{}`: {} measures up to {}, below the rated current of {}, which is the largest set-point unless `max_current` says otherwise; {}, or state a `max_current` of at most {}",
+                "`{}`: {} measures up to {}, below the rated current of {}; {}, or state a `max_current`{most}",
                 range.field,
                 range.given,
                 engineering(at_most(reach), "A"),
                 rated.given,
                 widen(range),
-                engineering(at_most(most), "A"),
             ),
         ),
         &[rated],

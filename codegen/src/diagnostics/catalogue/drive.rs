@@ -12,8 +12,8 @@ pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
         Code::OutsideOfBoard,
         &given.location,
         format!(
-            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply, state a `{}` of your own, or take another board",
-            given.field, given.given, limit.field, limit.given, limit.field
+            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply or take another board",
+            given.field, given.given, limit.field, limit.given
         ),
     );
     with_parts(error, &[limit])
@@ -71,17 +71,29 @@ pub enum BusRemedy {
     Current(f64),
 }
 
+/// What is known of the EMF as stated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stated {
+    /// Whether another field agrees with it.
+    pub is_confirmed: bool,
+    /// Whether it is stated as a peak.
+    pub is_peak: bool,
+}
+
 /// Below this share of the bus a resistive drop may be right; beyond this multiple of it an EMF is
 /// one of another basis.
 const LIKELY: [f64; 2] = [0.5, 1.5];
 
 /// EMF and resistive drop of the rating exceed the bus. In volt: the bus; `emf`: line to line at
-/// rated speed; `drop`: of rated current in two phases. `is_confirmed`: another field agrees with the EMF.
+/// rated speed; `drop`: of rated current in two phases.
 pub fn bus_too_low(
     bus: &Part,
     [speed, current, stated, resistance]: [&Part; 4],
     [volts, emf, drop]: [f64; 3],
-    is_confirmed: bool,
+    Stated {
+        is_confirmed,
+        is_peak,
+    }: Stated,
     remedy: BusRemedy,
 ) -> Diagnostic {
     let remedy = match remedy {
@@ -93,7 +105,7 @@ pub fn bus_too_low(
             )
         }
     };
-    let trace = if !is_confirmed && stated.field == "back_emf" && emf > LIKELY[1] / 2.0 * volts {
+    let trace = if !is_confirmed && is_peak && emf > LIKELY[1] / 2.0 * volts {
         "; a peak-to-peak voltage of a trace is written `peak_to_peak`"
     } else {
         ""

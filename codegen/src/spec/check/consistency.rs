@@ -11,6 +11,7 @@ use super::motor::Motor;
 use crate::diagnostics::catalogue::{self, Contradiction, Part};
 use crate::diagnostics::{Code, Collector, Diagnostic, engineering, rpm};
 use crate::spec::EmfShape;
+use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
 use crate::spec::units::Dimension;
 
@@ -209,11 +210,30 @@ fn others<'a>(
     let scaled = |reading: Reading, of: EmfShape| {
         constant / reading.factor(of) * of.quasi_square_factor() / shape.quasi_square_factor()
     };
-    let as_words = |reading: Reading| format!("`{}` as `{}`", part.field, reading.words());
+    // A voltage from peak to peak was halved.
+    let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
+    let as_words = |reading: Reading| {
+        let words = reading.words();
+        if is_double {
+            format!(
+                "`{}` as `{}`",
+                part.field,
+                words.replace("peak", "peak_to_peak")
+            )
+        } else {
+            format!("`{}` as `{words}`", part.field)
+        }
+    };
+    let is_of_peak = |reading: &Reading| matches!(reading, PhasePeak | LinePeak);
     let different = readings
         .iter()
         .copied()
-        .filter(|reading| *reading != stated.reading);
+        .filter(|reading| *reading != stated.reading && (!is_double || is_of_peak(reading)));
+    let whole = is_double.then(|| Other {
+        change: format!("`{}` as `{}`", part.field, stated.reading.words()),
+        at: part,
+        phase: scaled(stated.reading, shape) * 2.0,
+    });
     let single = different.clone().map(|reading| Other {
         change: as_words(reading),
         at: part,
@@ -230,7 +250,11 @@ fn others<'a>(
         at: part,
         phase: scaled(reading, other_shape),
     });
-    single.chain([by_shape]).chain(double).collect()
+    single
+        .chain(whole)
+        .chain([by_shape])
+        .chain(double)
+        .collect()
 }
 
 /// Those readings that fit, with the constant that they give, single changes first; two changes only

@@ -24,26 +24,19 @@ pub(super) fn finish(
     errors: &mut Collector,
     warnings: &mut Vec<Diagnostic>,
 ) -> Option<(f64, f64)> {
-    let controller = controller?;
     let rated = motor.rated_current.as_ref()?;
-    let drive = Drive {
-        controller,
-        emf_shape: motor.emf_shape?,
-        resistance: motor.resistance?,
-        inductance: motor.inductance?,
-        v_bus: inverter.v_bus.as_ref()?.si,
-        t_s: inverter.t_s?,
-        max_current: inverter.max_current.as_ref().map_or_else(
-            || default_max(motor, controller, rated.si),
-            |given| given.si,
-        ),
-    };
-    if let Some(error) = beyond_sensors(reader, inverter, adc, &drive, rated) {
+    let given = inverter.trip_current.as_ref();
+    let drive = drive(inverter, motor, controller, rated.si);
+    if let Some(error) = beyond_sensors(inverter, adc, drive.as_ref(), rated) {
         errors.push(error);
         return None;
     }
-    let given = inverter.trip_current.as_ref().map(|given| given.si);
-    let trip = given.unwrap_or_else(|| default_trip(&drive, adc));
+    let drive = drive?;
+    if let Some(error) = too_few_counts(reader, adc, drive.max_current) {
+        errors.push(error);
+        return None;
+    }
+    let trip = given.map_or_else(|| default_trip(&drive, adc), |given| given.si);
     let room = TripRoom {
         max: reader.part("max_current", || engineering(drive.max_current, "A")),
         level: reader.part("trip_current", || engineering(trip, "A")),
@@ -52,7 +45,7 @@ pub(super) fn finish(
         trip,
         needed: TRIP_AT_LEAST * drive.peak(),
         shown: shown(adc),
-        most: drive.largest_below(given.unwrap_or_else(|| usually_shown(adc))),
+        most: drive.largest_below(greatest_trip(inverter, adc)),
     };
     check_health(&drive, rated.si, &room, errors);
     if (drive.peak()..room.needed * (1.0 - 1e-9)).contains(&trip) {
@@ -61,15 +54,36 @@ pub(super) fn finish(
     Some((whole_counts(trip, adc.gain, f64::floor), drive.max_current))
 }
 
-/// A trip level or a largest set-point that the current sensors do not show, or show in a few counts.
+/// The values that the currents depend on, as far as they are stated.
+fn drive<'a>(
+    inverter: &Inverter,
+    motor: &Motor,
+    controller: Option<&'a ControllerSpec>,
+    rated: f64,
+) -> Option<Drive<'a>> {
+    let controller = controller?;
+    Some(Drive {
+        controller,
+        emf_shape: motor.emf_shape?,
+        resistance: motor.resistance?,
+        inductance: motor.inductance?,
+        v_bus: inverter.v_bus.as_ref()?.si,
+        t_s: inverter.t_s?,
+        max_current: inverter
+            .max_current
+            .as_ref()
+            .map_or_else(|| default_max(motor, controller, rated), |given| given.si),
+    })
+}
+
+/// A trip level or a rated current that the sensors do not show.
 fn beyond_sensors(
-    reader: &Reader,
     inverter: &Inverter,
     adc: &Adc,
-    drive: &Drive,
+    drive: Option<&Drive>,
     rated: &Given,
 ) -> Option<Diagnostic> {
-    let (shown, max) = (shown(adc), drive.max_current);
+    let shown = shown(adc);
     if let Some(trip) = &inverter.trip_current
         && trip.si > shown * (1.0 + 1e-9)
     {
@@ -77,18 +91,26 @@ fn beyond_sensors(
             &trip.part, &adc.part, shown,
         ));
     }
-    if inverter.max_current.is_none() && adc.reach < rated.si {
-        let most = drive.largest_below(usually_shown(adc));
-        return Some(catalogue::adc_range_too_small(
-            &adc.part,
-            &rated.part,
-            [adc.reach, most],
-        ));
-    }
+    (inverter.max_current.is_none() && adc.reach < rated.si).then(|| {
+        // Whole vectors and bands need more than the reference's peak.
+        let modulated = drive.filter(|drive| drive.reach() <= drive.peak());
+        let most = modulated.map(|drive| drive.largest_below(greatest_trip(inverter, adc)));
+        catalogue::adc_range_too_small(&adc.part, &rated.part, adc.reach, most)
+    })
+}
+
+/// A largest set-point of a few counts.
+fn too_few_counts(reader: &Reader, adc: &Adc, max: f64) -> Option<Diagnostic> {
     (max < LEAST_COUNTS * adc.gain * (1.0 - 1e-9)).then(|| {
         let part = reader.part("max_current", || engineering(max, "A"));
         catalogue::max_current_below_counts(&part, &adc.part, max, adc.gain, LEAST_COUNTS)
     })
+}
+
+/// The trip level as stated, or the greatest by default, ampere.
+fn greatest_trip(inverter: &Inverter, adc: &Adc) -> f64 {
+    let given = inverter.trip_current.as_ref();
+    given.map_or_else(|| usually_shown(adc), |given| given.si)
 }
 
 /// Greatest trip level that may be stated, ampere: a count less than the ADC shows.

@@ -5,6 +5,7 @@ use super::motor::Motor;
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::spec::RotorSensing;
+use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
@@ -89,7 +90,10 @@ pub(super) fn check_bus(
         &bus.part,
         [&speed.part, &current.part, &back_emf.part, &resistance],
         [bus.si, emf, drop],
-        motor.emf.len() > 1 || motor.rated_torque.is_some(),
+        catalogue::Stated {
+            is_confirmed: motor.emf.len() > 1 || motor.rated_torque.is_some(),
+            is_peak: back_emf.basis.contains(&Basis::Peak),
+        },
         remedy,
     ));
     Some(())

@@ -56,10 +56,7 @@ const WORDS: [(&str, &str); 6] = [
 
 /// Cores without figures of their own, and the core whose code they run.
 const CORES: [(&str, &[&str]); 2] = [
-    (
-        "cortex_m0",
-        &["cortex_m0plus", "cortex_m0+", "cortex_m1", "cortex_m23"],
-    ),
+    ("cortex_m0", &["cortex_m0plus", "cortex_m1", "cortex_m23"]),
     (
         "cortex_m4",
         &[

@@ -35,16 +35,17 @@ impl Product {
             rest: letters.trim(),
             weighs,
         };
-        let product = reader.product()?;
+        let product = reader.product(false)?;
         reader.rest.is_empty().then_some(product)
     }
 
-    fn of_number(digits: &str) -> Option<Self> {
-        // Multiples are whole numbers: `V/1000rpm`, `V/200rpm` of a trace.
+    fn of_number(digits: &str, divides: bool) -> Option<Self> {
+        // Below a line any whole number, as of a trace at 200 rpm; else `1 500 rpm` would be 500 rpm.
+        let is_round = digits.starts_with('1') && digits[1..].bytes().all(|digit| digit == b'0');
         let times: f64 = digits
             .parse()
             .ok()
-            .filter(|_| !digits.starts_with('0') && digits.len() <= 7)?;
+            .filter(|_| (is_round || divides) && !digits.starts_with('0') && digits.len() <= 7)?;
         Some(Self {
             symbol: digits.to_owned(),
             times,
@@ -106,13 +107,14 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Factors from left to right, up to a closing parenthesis or the end.
-    fn product(&mut self) -> Option<Product> {
+    /// Factors from left to right, up to a closing parenthesis or the end; `divides`: whether another product is
+    /// divided by the first of them.
+    fn product(&mut self, divides: bool) -> Option<Product> {
         // `4000/min`.
         let mut product = if self.rest.trim_start().starts_with('/') {
             Product::ONE
         } else {
-            self.factor()?
+            self.factor(divides)?
         };
         loop {
             let (sign, between) = if self.rest.trim_start().is_empty() || self.next_is(')') {
@@ -126,7 +128,7 @@ impl<'a> Reader<'a> {
                 let _ = self.take('*') || self.take('\u{b7}') || self.take('.');
                 (1, " ")
             };
-            let factor = self.factor()?;
+            let factor = self.factor(sign < 0)?;
             let symbol = format!("{}{between}{}", product.symbol, factor.symbol);
             product = product.combined(&factor, sign)?;
             product.symbol = symbol;
@@ -138,18 +140,18 @@ impl<'a> Reader<'a> {
     }
 
     /// A name with its power, a multiple of one, or a product in parentheses.
-    fn factor(&mut self) -> Option<Product> {
+    fn factor(&mut self, divides: bool) -> Option<Product> {
         if self.take('(') {
-            let mut inner = self.product()?;
+            let mut inner = self.product(divides)?;
             inner.symbol = format!("({})", inner.symbol);
             return self.take(')').then_some(inner);
         }
         if let Some(digits) = self.take_while(|c| c.is_ascii_digit()) {
-            let number = Product::of_number(digits)?;
+            let number = Product::of_number(digits, divides)?;
             if self.next_is('/') || self.next_is(')') || self.rest.trim_start().is_empty() {
                 return (digits == "1").then_some(number);
             }
-            let factor = self.factor()?;
+            let factor = self.factor(divides)?;
             let symbol = format!("{digits}{}", factor.symbol);
             let product = number.combined(&factor, 1)?;
             return Some(Product { symbol, ..product });

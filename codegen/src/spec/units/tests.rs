@@ -129,8 +129,32 @@ fn amplitudes_are_no_part_of_the_unit() {
 #[test]
 fn what_is_no_quantity_is_no_unit() {
     for symbol in [
-        "", "W", "pH", "mm", "furlong", "V/rad/s", "V/2000", "2/min", "A/A", "rms", "ohm rms",
-        "Hrms", "V/", "(V", "V)", "oz", "kg", "nm", "V--s", "m2/m", "V/01rpm", "Vrms/Apk", "g cm3",
+        "",
+        "W",
+        "pH",
+        "mm",
+        "furlong",
+        "V/rad/s",
+        "V/2000",
+        "2/min",
+        "500 rpm",
+        "12 500 Hz",
+        "8V",
+        "A/A",
+        "rms",
+        "ohm rms",
+        "Hrms",
+        "V/",
+        "(V",
+        "V)",
+        "oz",
+        "kg",
+        "nm",
+        "V--s",
+        "m2/m",
+        "V/01rpm",
+        "Vrms/Apk",
+        "g cm3",
     ] {
         assert!(Unit::parse(symbol).is_none(), "{symbol}");
     }

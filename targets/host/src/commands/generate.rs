@@ -28,25 +28,6 @@ pub struct Options {
     pub json: bool,
 }
 
-/// A text of a drive; the same drive gives the same bytes.
-pub fn text_of(drive: &Prepared, emit: Emit) -> String {
-    let generated = &drive.generated;
-    match emit {
-        Emit::Rust => drive.rust(),
-        Emit::C99 => {
-            let Sources { header, source, .. } = c99_of(drive);
-            header + "\n" + &source
-        }
-        Emit::Ir => generated.graph.program().to_string(),
-        Emit::Datasheet => drive.data_sheet(),
-        Emit::Gappa => emit_gappa(&generated.graph)
-            .iter()
-            .map(ToString::to_string)
-            .collect::<Vec<_>>()
-            .join("\n"),
-    }
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -94,7 +75,7 @@ struct Texts<'a> {
     files: &'a [File],
 }
 
-/// The files of a text: one script each for Gappa, header and source of drive and runtime in C.
+/// The files of a text, the same bytes for the same drive: one script each for Gappa, header and source of drive and runtime in C.
 fn files_of(drive: &Prepared, emit: Emit) -> Vec<File> {
     match emit {
         Emit::Gappa => emit_gappa(&drive.generated.graph)
@@ -121,11 +102,19 @@ fn files_of(drive: &Prepared, emit: Emit) -> Vec<File> {
             });
             own.into_iter().chain(shared).collect()
         }
-        _ => vec![File {
-            name: format!("{}.{}", drive.motor, emit.ending()),
-            text: text_of(drive, emit),
-        }],
+        Emit::Rust => vec![file_of(drive, emit, drive.rust())],
+        Emit::Ir => vec![file_of(
+            drive,
+            emit,
+            drive.generated.graph.program().to_string(),
+        )],
+        Emit::Datasheet => vec![file_of(drive, emit, drive.data_sheet())],
     }
+}
+
+fn file_of(drive: &Prepared, emit: Emit, text: String) -> File {
+    let name = format!("{}.{}", drive.motor, emit.ending());
+    File { name, text }
 }
 
 /// The drive in C, under the name of its type.

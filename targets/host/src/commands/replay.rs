@@ -6,6 +6,7 @@ use crate::cli::{
 use clap::Args;
 use hexagen_lab::replay::replay;
 use serde::Serialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -35,10 +36,15 @@ pub struct Options {
 struct Replayed<'a> {
     motor: &'a str,
     controller: &'a str,
-    /// The period that tripped, and its fault.
-    tripped: Option<(u64, String)>,
-    /// By column.
-    periods: Vec<BTreeMap<String, String>>,
+    tripped: Option<Tripped>,
+    /// By column: numbers and words; absent values are null.
+    periods: Vec<BTreeMap<String, Value>>,
+}
+
+#[derive(Debug, Serialize)]
+struct Tripped {
+    period: usize,
+    fault: String,
 }
 
 /// Opens a log.
@@ -54,6 +60,15 @@ pub fn in_log(path: &Path, error: &dyn std::error::Error) -> Failure {
     Failure::Argument(format!("--log {}: {error}", path.display()))
 }
 
+/// A cell as data.
+fn value_of(text: String) -> Value {
+    match text.parse::<f64>() {
+        _ if text.is_empty() => Value::Null,
+        Ok(number) => number.into(),
+        Err(_) => text.into(),
+    }
+}
+
 /// Runs the command.
 ///
 /// # Errors
@@ -66,13 +81,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         .map_err(|error| in_log(&options.log, &error))?;
     if options.json {
         let periods = csv::Reader::from_reader(rows.as_slice()).into_deserialize();
+        let periods = periods.map(|row: csv::Result<BTreeMap<String, String>>| {
+            let cells = row?.into_iter();
+            Ok(cells
+                .map(|(column, text)| (column, value_of(text)))
+                .collect())
+        });
         let periods: Result<_, csv::Error> = periods.collect();
         return print_json(&Replayed {
             motor: &drive.motor,
             controller: &drive.variant,
-            tripped: replayed
-                .fault
-                .map(|(period, fault)| (period as u64, fault.to_string())),
+            tripped: replayed.fault.map(|(period, fault)| Tripped {
+                period,
+                fault: fault.to_string(),
+            }),
             periods: periods.map_err(|error| in_log(&options.log, &error))?,
         });
     }

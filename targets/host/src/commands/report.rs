@@ -1,6 +1,6 @@
 //! `hexagen report`: the result table and the page of one motor.
 
-use crate::cli::{Bar, Failure, print_json, print_table, print_text, wrapped_row};
+use crate::cli::{Bar, Failure, note, print_json, print_table, print_text, wrapped_row};
 use crate::render;
 use clap::Args;
 use hexagen_lab::report::{results_page, variants_table, verdict};
@@ -67,6 +67,9 @@ fn write(motor: &str, board: Option<&str>, options: &Output) -> Result<(), Failu
     if options.json {
         print_json(&page)?;
     } else {
+        for warning in data.own.iter().flat_map(|own| &own.judgement.warnings) {
+            note(warning);
+        }
         print_text(&lines(&data, &path).join("\n"))?;
         if options.all {
             print_table(&variants_table(&data))?;

@@ -220,7 +220,8 @@ function options(plot, width) {
   return {
     width,
     height,
-    padding: [top, 12, 0, 4],
+    // A label at the end of the axis stands half beside it.
+    padding: [top, Math.max(12, Math.ceil(widthOf(plot.x.range[1].toFixed(0)) / 2) + 1), 0, 4],
     scales: scales(plot),
     axes: [axis(plot.x, false), axis(plot.y, true)],
     series: [
@@ -600,7 +601,8 @@ function watchPlots() {
     for (const { target } of seen) {
       const entry = plots.find(({ holder }) => holder === target);
       const width = Math.floor(target.clientWidth);
-      if (width === entry.width) continue;
+      // None while its figure is hidden.
+      if (width === 0 || width === entry.width) continue;
       entry.width = width;
       if (entry.u) draw(entry);
       else reserve(entry);
@@ -705,7 +707,7 @@ function sort(heading) {
 // Names of rows that stay readable while a table scrolls sideways: lines break between settings, else
 // after a key, never inside of a word; a group's name can move in its cell, as wide as the table.
 function nameRows() {
-  for (const code of document.querySelectorAll("th small code")) {
+  for (const code of document.querySelectorAll("th code")) {
     const settings = code.innerHTML.split(/<wbr>|(?<=:)/);
     const breakable = settings.map((of) => `<span>${of.replace("=", "=<wbr>")}</span>`);
     code.innerHTML = breakable.join("");

@@ -19,9 +19,16 @@ pub struct Open {
     _browser: Browser,
 }
 
-/// Opens a page's file at a width; `None`, with a message, without a browser outside of continuous
-/// integration.
+/// Opens a page's file at a width, all plots drawn; `None` as [`load`].
 pub fn open(file: &Path, width: u32, scheme: &str) -> Option<Open> {
+    let open = load(file, width, scheme)?;
+    open.ask("drawAll()");
+    Some(open)
+}
+
+/// Opens a page's file at a width, as a reader finds it: few plots are drawn; `None`, with a message,
+/// without a browser outside of continuous integration.
+pub fn load(file: &Path, width: u32, scheme: &str) -> Option<Open> {
     let args = ["--disable-quic", "--disable-component-update"].map(OsStr::new);
     let options = LaunchOptions {
         // Containers of continuous integration run as root, where Chromium has no sandbox. The page
@@ -103,7 +110,6 @@ pub fn open(file: &Path, width: u32, scheme: &str) -> Option<Open> {
         _browser: browser,
     };
     open.tab.evaluate(HELPERS, false).expect("helpers");
-    open.ask("drawAll()");
     Some(open)
 }
 

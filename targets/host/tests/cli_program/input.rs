@@ -1,6 +1,7 @@
 //! Wrong input: code 2, nothing on stdout, and a message that says what and where.
 
 use crate::support::{PAPER, run};
+use serde_json::Value;
 use std::fs;
 
 /// A motor whose file says its inertia, and a drive that regulates its speed.
@@ -297,6 +298,36 @@ fn options_out_of_range_or_at_odds_are_told() {
     ] {
         run(arguments).assert_bad_input(&[text]);
     }
+}
+
+#[test]
+fn options_of_the_report_stand_before_no_command() {
+    run(["--json", "check", PAPER]).assert_bad_input(&["--json"]);
+    run(["--all", "motors"]).assert_bad_input(&["--all"]);
+    let help = run(["--help"]).stdout;
+    for option in ["--all", "--json", "--out"] {
+        assert!(help.contains(option), "{option}");
+    }
+}
+
+#[test]
+fn texts_and_replayed_periods_are_data_too() {
+    let texts = run(["generate", PAPER, "--emit", "c99", "--json"]).json();
+    let files = texts["files"].as_array().expect("files");
+    assert_eq!(files.len(), 4);
+    let has_text = |file: &Value| file["text"].as_str().is_some_and(|text| text.len() > 1000);
+    assert!(files.iter().all(has_text));
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("log.csv");
+    let row = "2048,2048,5,100\n";
+    fs::write(&log, format!("adc_1,adc_2,hall,ticks\n{}", row.repeat(3))).expect("is written");
+    let log = log.to_str().expect("a path");
+    let replayed = run(["replay", PAPER, "--log", log, "--json"]).json();
+    let periods = replayed["periods"].as_array().expect("periods");
+    assert_eq!(periods.len(), 3);
+    assert!(replayed["tripped"].is_null());
+    let numbers = periods[0].as_object().expect("columns").values();
+    assert!(numbers.filter(|value| value.is_number()).count() > 10);
 }
 
 #[test]

@@ -28,7 +28,7 @@ pub struct Prepared {
     pub variant: String,
     /// The checked specification.
     pub spec: Spec,
-    /// Lowest bus voltage of the whole torque, volt, where `bus_min` is stated.
+    /// Lowest bus voltage of the whole torque, volt, where the motor's file states a `bus_min` of its own.
     pub least_bus: Option<f64>,
     /// The generated program.
     pub generated: Generated,
@@ -92,8 +92,9 @@ pub fn prepare_ast(
         motor: motor.to_owned(),
         variant: variant_of(&ast),
         built_in: built_in(&generated.interface.spec_toml),
-        least_bus: (origins.is_given("inverter.bus_min"))
-            .then(|| spec.inverter.lowest_driving_bus()),
+        least_bus: (ast.inverter.field("bus_min").is_some())
+            .then(|| spec.inverter.lowest_driving_bus())
+            .filter(|least| *least < spec.inverter.v_bus),
         spec,
         generated,
         warnings: warnings.iter().map(ToString::to_string).collect(),

@@ -32,7 +32,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     let Some(record) = own.and_then(|own| own.records.last()) else {
         return Vec::new();
     };
-    let note = "Drag over a plot to zoom, double-click to see all of it again; a click on a name switches its line on or off. With the \
+    let note = "Drag over a plot to zoom, or spread two fingers on a touch screen; double-click or double-tap to see all of it again; a \
+                click on a name switches its line on or off. With the \
                 keyboard, arrow keys read the values of a plot, + and \u{2212} zoom, and 0 shows all of it. Bands are PWM ripple, lines means over \
                 one control period.";
     let rpm = number(record.rpm, 0);

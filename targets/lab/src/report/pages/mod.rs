@@ -68,7 +68,7 @@ pub fn results_page(data: &Results) -> Page {
                 texts::linked(data),
             ),
             Section::new("data-sheet", "Data sheet", texts::data_sheet(data)),
-            Section::new("spec", "Specification", texts::spec(data)),
+            Section::new("spec", "Normalised specification", texts::spec(data)),
         ],
         generator: data.generator.clone(),
     }
