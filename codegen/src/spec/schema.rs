@@ -123,7 +123,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     word("sensed_phases", "ab"),
     quantity("settling_time", &[D::Time], 0.0, 1e-4, "1 us"),
     quantity("aperture_time", &[D::Time], 0.0, 1e-4, "200 ns"),
-    quantity("conversion_time", &[D::Time], 0.0, 1e-4, "0 us"),
+    quantity("conversion_time", &[D::Time], 0.0, 1e-4, "400 ns"),
     integer("current_adcs", 1, 3, "2"),
     quantity("sampling_lead", &[D::Time], 0.0, 1e-4, "500 ns"),
     quantity("current_sum_tolerance", &[D::Current], 1e-4, 2e4, "2 A"),

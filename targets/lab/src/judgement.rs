@@ -240,7 +240,7 @@ impl Point {
             Some(torque) if torque > 0.0 => {
                 let torque = significant(torque, 3);
                 Some(format!(
-                    "on a bus of {bus} {torque} % of the torque is left there"
+                    "on a bus of {bus} it makes {torque} % of its torque at rated speed"
                 ))
             }
             _ => Some(format!("a bus of {bus} does not drive it at rated speed")),

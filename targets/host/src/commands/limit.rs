@@ -117,7 +117,7 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
         .as_ref()
         .map_or_else(String::new, |free| {
             format!(
-                "; with sensors in the phases and legs that may be high all the time {}",
+                "; with in-phase sensors {}",
                 found(free, outcome.torque_nm, drive)
             )
         });

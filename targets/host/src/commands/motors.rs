@@ -2,6 +2,7 @@
 
 use crate::cli::{Bar, Failure, note, paragraph, print_json, print_table, print_text};
 use clap::Args;
+use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::motors::{
     COARSE, LibraryMotor, Limit, RIPPLE, RatedPoint, SPEEDS, TORQUE, library_at_rating,
 };
@@ -13,6 +14,9 @@ use std::f64::consts::PI;
 /// Options of `motors`.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Options {
+    /// A motor of the library: print its file, to be copied
+    #[arg(value_name = "MOTOR", conflicts_with = "all")]
+    pub motor: Option<String>,
     /// Print every column: periods, and torque and ripple over speed
     #[arg(long)]
     pub all: bool,
@@ -30,6 +34,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     struct Library {
         motors: Vec<LibraryMotor>,
     }
+    if let Some(name) = &options.motor {
+        return print_motor(name, options.json);
+    }
     let motors = library_at_rating(&Bar::default())?;
     if options.json {
         return print_json(&Library { motors });
@@ -46,7 +53,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     } else {
         print_table(&table(&motors))?;
         print_text(&paragraph(&format!(
-            "Each with its file's controller, at rated torque, simulated. Torque and ripple: the least and the greatest up to rated speed. Limited by: - where the drive is right ({right}). `hexagen check MOTOR` says more of one; --all has every column."
+            "Each with its file's controller, at rated torque, simulated. Torque and ripple: the least and the greatest up to rated speed. Limited by: - where the drive is right ({right}). `hexagen check MOTOR` says more of one, `hexagen motors MOTOR` prints its file; --all has every column."
         )))?;
     }
     for motor in &motors {
@@ -55,6 +62,22 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+fn print_motor(name: &str, as_json: bool) -> Result<(), Failure> {
+    #[derive(Serialize)]
+    struct MotorFile<'a> {
+        name: &'a str,
+        text: &'a str,
+    }
+    let motor = SelectedMotor::find(name, &PlantOptions::default())?.source;
+    if as_json {
+        return print_json(&MotorFile {
+            name: &motor.name,
+            text: &motor.text,
+        });
+    }
+    print_text(&motor.text)
 }
 
 /// What a reader looks for first.

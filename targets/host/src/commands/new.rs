@@ -325,7 +325,7 @@ impl Draft {
         let stated = fields.iter().filter(|(name, _)| !is_own(name));
         let entries = stated.map(|(name, value)| format!("# {}\n", entry(name, value)));
         let entries: String = entries.collect();
-        format!("# {board} states these; a line of your own stands over its line.\n{entries}\n")
+        format!("# {board} states these; a line of your own overrides it.\n{entries}\n")
     }
 }
 

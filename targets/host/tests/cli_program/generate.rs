@@ -86,6 +86,11 @@ fn a_variant_changes_the_code() {
 
 #[test]
 fn the_library_is_listed() {
+    let file = run(["motors", "hoverboard-hub"]);
+    assert!(
+        file.stdout.starts_with("board = \"hoverboard\"\n"),
+        "{file:?}"
+    );
     let library = run(["motors", "--json"]).json();
     let motors = library["motors"].as_array().expect("a list");
     assert_eq!(keys(&library), ["motors"]);

@@ -83,10 +83,9 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer",
         RotorSensing::Angle(_) => "an angle sensor",
     };
-    let rates = judgement
-        .points
-        .iter()
-        .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
+    let v_bus = drive.spec.inverter.v_bus;
+    let nominal = judgement.points.iter().filter(|point| point.bus_v == v_bus);
+    let rates = nominal.filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
     let mut rates: Vec<String> = rates.collect();
     rates.dedup();
     format!(
@@ -159,7 +158,7 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
         String::new()
     };
     format!(
-        "{} takes a peak of {}, rated {}{beyond}; trips at {}",
+        "{} takes a peak of {}, rated {} peak{beyond}; trips at {}",
         engineering(judgement.torque_nm, "Nm"),
         engineering(judgement.peak_a, "A"),
         engineering(motor.rated_current, "A"),

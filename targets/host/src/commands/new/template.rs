@@ -185,8 +185,8 @@ const INVERTER: &[Line] = &[
     .only_with("current_sensing", "low_side"),
     needed(
         &["conversion_time"],
-        "From the sample of one current to that of the next; 0 where ADCs convert at once.",
-        "0 us",
+        "From the sample of one current to that of the next; 0 only where each sensor has an ADC of its own.",
+        "400 ns",
     )
     .only_with("current_sensing", "low_side"),
     needed(
@@ -199,7 +199,7 @@ const INVERTER: &[Line] = &[
     needed(
         &["v_bus"],
         "fixed, or measured: the firmware passes the bus voltage; then also bus_adc_bits and bus_adc_range,\n\
-         # and bus_min and bus_max, such as those of a battery.",
+         # and bus_min and bus_max, at which the drive trips: with room around a battery's voltages.",
         "fixed",
     )
     .optional(),
