@@ -360,8 +360,8 @@ impl Code {
             ),
             Self::OutsideOfBoard => say(
                 "The file of the board states the bus voltages that its parts bear.",
-                "a call or motor file with `board` and a `bus_voltage` outside the board's range",
-                "a bus voltage within it",
+                "board = \"vesc-4\"\nbus_voltage = \"70 V\"",
+                "board = \"vesc-4\"\nbus_voltage = \"48 V\"",
                 "Choose another board, or a bus voltage that this one is made for.",
             ),
             _ => say(
@@ -490,8 +490,8 @@ impl Code {
             ),
             Self::SwingAboveTrip => say(
                 "In commutations of slow rotation hysteresis control lets a current swing above the trip level.",
-                "a phcc drive whose adc_range is little above its rated current",
-                "the same drive with a wider adc_range or a lower max_current",
+                "bus_voltage = \"48 V\"\nmax_current = \"22 A\"\nkind = \"phcc\"",
+                "bus_voltage = \"48 V\"\nmax_current = \"20 A\"\nkind = \"phcc\"",
                 "Lower max_current or widen adc_range.",
             ),
             Self::WatchIsBlind => say(

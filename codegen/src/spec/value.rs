@@ -23,7 +23,21 @@ pub(super) fn parse_value(field: FieldRule, text: &str, at: &Location) -> Value 
             Err(error) => Value::Malformed(Box::new(error)),
         };
     }
+    if field.name == "poles"
+        && let Some(poles) = poles_beside_slots(text)
+    {
+        return plain_number(field, poles, at);
+    }
     read(field, text, at).unwrap_or_else(|error| Value::Malformed(Box::new(error)))
+}
+
+/// The poles of `12N14P`, as makers of outrunners write slots and poles.
+fn poles_beside_slots(text: &str) -> Option<&str> {
+    let (slots, poles) = text.trim().split_once(['N', 'n'])?;
+    let poles = poles.strip_suffix(['P', 'p'])?;
+    let is_number =
+        |digits: &str| !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
+    (is_number(slots) && is_number(poles)).then_some(poles)
 }
 
 /// Free text in one line. Texts become comments of emitted code, so characters that compilers

@@ -104,6 +104,20 @@ fn every_word_of_a_basis_is_read_by_both_front_ends() {
     }
 }
 
+/// Makers of outrunners print slots and poles in one word.
+#[test]
+fn slots_and_poles_say_the_pole_pairs() {
+    let text = COMPLETE.replace("pole_pairs = 4", "poles = \"12N14P\"");
+    assert_eq!(of_file(&text).motor.pole_pairs, 7);
+    let call = changed(COMPLETE_CALL, "-pole_pairs; +motor poles: 12N14P");
+    assert_eq!(of_call(&call).motor.pole_pairs, 7);
+    for wrong in ["12N", "N14P", "12N14", "12N14P2", "xN14P"] {
+        let text = COMPLETE.replace("pole_pairs = 4", &format!("poles = \"{wrong}\""));
+        let read = parse_toml(&text, "motor.toml").and_then(|ast| check(&ast));
+        assert!(read.is_err(), "{wrong}");
+    }
+}
+
 /// One EMF, in every unit and basis; the phase constant of the paper's motor is 0.0824 V s/rad.
 #[test]
 fn every_unit_of_an_emf_is_read_by_both_front_ends() {

@@ -5,12 +5,11 @@ use crate::diagnostics::Code;
 use crate::spec::schema;
 
 /// What no motor file makes by itself.
-const ELSEWHERE: [Code; 6] = [
+const ELSEWHERE: [Code; 5] = [
     Code::UnknownBoard,
     Code::OutsideOfBoard,
     Code::MotorFile,
     Code::Variant,
-    Code::SwingAboveTrip,
     Code::Internal,
 ];
 
