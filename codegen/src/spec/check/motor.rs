@@ -196,12 +196,13 @@ fn read_winding(reader: &Reader, errors: &mut Collector) -> Option<Winding> {
             let of_phase = [Basis::PerPhase, Basis::Phase];
             of_phase.iter().any(|basis| number.basis.contains(basis))
         });
-    if let Some(name) = of_phase {
-        errors.push(catalogue::missing_winding(&reader.part(name, String::new)));
-    } else if is_linkage {
-        reader.require(errors, &["winding"]);
-    } else {
-        return Some(Winding::Star);
+    match of_phase {
+        Some(name) if reader.may_lack("winding") => {
+            errors.push(catalogue::missing_winding(&reader.part(name, String::new)));
+        }
+        Some(_) => {}
+        None if is_linkage => reader.require(errors, &["winding"]),
+        None => return Some(Winding::Star),
     }
     None
 }

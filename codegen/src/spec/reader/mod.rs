@@ -154,7 +154,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn may_lack(&self, name: &str) -> bool {
+    /// Whether the field is missing without another error that says why.
+    pub fn may_lack(&self, name: &str) -> bool {
         self.section.location.is_some()
             && !self.section.incomplete
             && self.section.field(name).is_none()
