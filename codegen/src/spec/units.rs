@@ -86,13 +86,13 @@ impl Unit {
         known.map_or(&[], |(_, spellings)| spellings)
     }
 
-    /// What `value` of a unit is of its inverse, if that is one of some quantities: 20 mA/count for 50 counts/A.
+    /// The reciprocal of a value, if that is one of some quantities: 20 mA/count for 50 counts/A.
     pub(super) fn of_inverse(value: f64, symbol: &str, dimensions: &[Dimension]) -> Option<String> {
         let (inverse, _) = Self::parse(&format!("1/({symbol})"))?;
-        let (_, spellings) = KNOWN
+        let dimension = dimensions
             .iter()
-            .find(|(known, _)| *known == inverse.dimension && dimensions.contains(known))?;
-        let known = Self::from_symbol(spellings.first()?)?;
+            .find(|wanted| **wanted == inverse.dimension)?;
+        let known = Self::from_symbol(Self::spellings(*dimension).first()?)?;
         let value = inverse.to_si(1.0 / value) / known.to_si(1.0);
         let is_plausible = (1e-12..1e12).contains(&value);
         is_plausible.then(|| engineering(value, &known.symbol))

@@ -245,9 +245,7 @@ fn read_unit(
             &remedy,
         ));
     }
-    let inverse = digits
-        .parse()
-        .ok()
+    let inverse = number(digits)
         .and_then(|value| Unit::of_inverse(value, &written(unknown), field.dimensions()));
     if let Some(inverse) = inverse {
         let given = given(unknown);

@@ -24,7 +24,8 @@ const RIPPLE: f64 = 7.0;
 /// Least torque at rated speed of a drive that works, percent.
 const LEAST_TORQUE: f64 = 50.0;
 
-/// Torque that is held, percent. `limit` looks for the speed where a torque ends, and takes 3 %.
+/// Least part of the demanded torque that counts as all of it, percent. `limit`, which looks for the speed
+/// where the torque ends, takes 97 %.
 const HELD: f64 = 99.0;
 
 /// Fewest ADC counts of the rated current for a smooth current.
@@ -142,17 +143,21 @@ impl Judgement {
             overruns: times.iter().any(StepTime::is_too_long),
             warnings: drive.warnings.clone(),
         };
-        let (works, verdict) = judgement.judge(drive);
-        (judgement.works, judgement.verdict) = (works, verdict);
+        (judgement.works, judgement.verdict) = judgement.judge(drive);
         Ok(judgement)
     }
 
+    /// The runs on the nominal bus, and that at the least bus voltage, if there is one.
+    pub fn runs(&self) -> (&[Point], &[Point]) {
+        self.points.split_at(SPEEDS.len().min(self.points.len()))
+    }
+
     fn judge(&self, drive: &Prepared) -> (bool, String) {
-        let mut nominal = self.points.iter().take(SPEEDS.len());
-        if let Some(trip) = nominal.find_map(|point| point.tripped) {
+        let (nominal, lowest) = self.runs();
+        if let Some(trip) = nominal.iter().find_map(|point| point.tripped) {
             return (false, format!("does not work: {trip}"));
         }
-        let [slow, rated, lowest @ ..] = self.points.as_slice() else {
+        let [slow, rated] = nominal else {
             return (false, "does not work: it was not run".to_owned());
         };
         let slowly = format!("at {:.0} rpm {}", slow.rpm, self.left(slow));
@@ -199,12 +204,13 @@ impl Judgement {
 
     /// The greatest ripple on the nominal bus, if it is worth a word.
     fn rippling(&self, spec: &Spec) -> Option<String> {
-        let nominal = self.points.iter().take(SPEEDS.len());
-        let ripples = nominal.filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
+        let (nominal, _) = self.runs();
+        let ripples = nominal
+            .iter()
+            .filter_map(|point| Some((point.rpm, point.ripple_pp_pct?)));
         let (rpm, ripple) = ripples.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
-        let is_modulated = ["pdcc", "pi-pwm", "p-pwm"].contains(&spec.controller.kind());
         let is_sampled = spec.inverter.rotor_sensing == RotorSensing::SampledHalls;
-        let finer = if is_modulated && is_sampled {
+        let finer = if spec.controller.modulates() && is_sampled {
             " (`hall_timer_clock`, a timer of the Hall edges, may lower it)"
         } else {
             ""
@@ -232,7 +238,7 @@ impl Judgement {
 }
 
 impl Point {
-    /// What a bus leaves that does not drive the whole torque.
+    /// What is told of a run at the least bus voltage, where it does not hold the torque.
     fn lost_on_bus(&self) -> Option<String> {
         let bus = engineering(self.bus_v, "V");
         match self.torque_pct {

@@ -108,36 +108,29 @@ impl TripRoom {
 
 /// The largest set-point reaches the trip current.
 pub fn max_current_above_trip(room: &TripRoom) -> Diagnostic {
-    with_parts(
-        Diagnostic::new(
-            Code::MaxCurrentAboveTrip,
-            &room.max.location,
-            format!(
-                "`max_current`: {} gives phase currents of up to {}, above the trip current of {}; {}",
-                room.max.given,
-                engineering(at_least(room.peak), "A"),
-                room.level.given,
-                room.remedy(),
-            ),
-        ),
-        &[&room.level, &room.range],
-    )
+    let relation = format!("above the trip current of {}", room.level.given);
+    without_room(Code::MaxCurrentAboveTrip, room, &relation)
 }
 
 /// Between the largest set-point and the trip level is less room than overshoot and ripple take.
 pub fn trip_near_set_point(room: &TripRoom) -> Diagnostic {
+    let relation = format!(
+        "and the drive trips at {}: overshoot and ripple may trip it without a fault",
+        room.level.given
+    );
+    without_room(Code::TripNearSetPoint, room, &relation)
+}
+
+/// `relation`: of the phase currents to the trip level, a clause.
+fn without_room(code: Code, room: &TripRoom, relation: &str) -> Diagnostic {
+    let message = format!(
+        "`max_current`: {} gives phase currents of up to {}, {relation}; {}",
+        room.max.given,
+        engineering(at_least(room.peak), "A"),
+        room.remedy(),
+    );
     with_parts(
-        Diagnostic::new(
-            Code::TripNearSetPoint,
-            &room.max.location,
-            format!(
-                "`max_current`: {} gives phase currents of up to {}, and the drive trips at {}: overshoot and ripple may trip it without a fault; {}",
-                room.max.given,
-                engineering(at_least(room.peak), "A"),
-                room.level.given,
-                room.remedy(),
-            ),
-        ),
+        Diagnostic::new(code, &room.max.location, message),
         &[&room.level, &room.range],
     )
 }

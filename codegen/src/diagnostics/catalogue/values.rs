@@ -83,7 +83,7 @@ pub fn unknown_unit(
     )
 }
 
-/// A value over which 1 is what the field takes; `inverse`: that value.
+/// The reciprocal of what the field takes, as counts per ampere are of amperes per count; `inverse`: what to give.
 pub fn inverse_unit(at: &Location, field: &str, given: &str, inverse: &str) -> Diagnostic {
     Diagnostic::new(
         Code::UnknownUnit,

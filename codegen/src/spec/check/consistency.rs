@@ -5,7 +5,7 @@
 //! the commonest mistake of this field. One contradiction is one error, at the value that is most
 //! likely wrong; it tells which other reading would fit.
 
-use super::emf::{Emf, Reading};
+use super::emf::{Emf, Reading, words};
 use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::catalogue::{self, Contradiction, Part};
@@ -212,18 +212,7 @@ fn others<'a>(
     };
     // A voltage from peak to peak was halved.
     let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
-    let as_words = |reading: Reading| {
-        let words = reading.words();
-        if is_double {
-            format!(
-                "`{}` as `{}`",
-                part.field,
-                words.replace("peak", "peak_to_peak")
-            )
-        } else {
-            format!("`{}` as `{words}`", part.field)
-        }
-    };
+    let as_words = |reading| format!("`{}` as `{}`", part.field, words(&stated.given, reading));
     let is_of_peak = |reading: &Reading| matches!(reading, PhasePeak | LinePeak);
     let different = readings
         .iter()

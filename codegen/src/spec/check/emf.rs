@@ -75,6 +75,29 @@ impl Reading {
     }
 }
 
+/// Basis words of a reading for the number as it was written.
+pub(super) fn words(given: &Given, reading: Reading) -> String {
+    let words = reading.words();
+    if given.basis.contains(&Basis::PeakToPeak) {
+        words.replace("peak", "peak_to_peak")
+    } else {
+        words.to_owned()
+    }
+}
+
+/// The amplitude of what is stated from peak to peak.
+pub(super) fn amplitude(given: Given) -> Given {
+    let factor = match given.dimension {
+        // It is over the voltage.
+        Some(Dimension::SpeedConstant) => 2.0,
+        _ => 0.5,
+    };
+    Given {
+        si: factor * given.si,
+        ..given
+    }
+}
+
 /// A statement of the EMF constant.
 #[derive(Clone, Debug)]
 pub(super) struct Emf<'a> {
@@ -155,7 +178,7 @@ fn read_back_emf<'a>(
     shape: Option<EmfShape>,
     errors: &mut Collector,
 ) -> Option<Emf<'a>> {
-    let mut given = reader.quantity(errors, "back_emf")?;
+    let given = reader.quantity(errors, "back_emf")?;
     let has = |basis: Basis| given.basis.contains(&basis);
     let phase = has(Basis::Phase) || has(Basis::PerPhase);
     let line = has(Basis::LineToLine);
@@ -220,18 +243,12 @@ fn read_back_emf<'a>(
         push_forms(&given, [false, true], None, shape, errors);
         return None;
     }
-    let amplitude = match stated.first() {
-        None if dimension != Dimension::EmfConstant => Some(Basis::Peak),
-        Some(Basis::PeakToPeak) => {
-            given.si *= match dimension {
-                Dimension::SpeedConstant => 2.0,
-                _ => 0.5,
-            };
-            Some(Basis::Peak)
-        }
-        stated => stated.copied(),
+    let (given, basis) = match stated.first() {
+        None if dimension != Dimension::EmfConstant => (given, Some(Basis::Peak)),
+        Some(Basis::PeakToPeak) => (amplitude(given), Some(Basis::Peak)),
+        stated => (given, stated.copied()),
     };
-    let reading = match (between_lines, amplitude) {
+    let reading = match (between_lines, basis) {
         (_, Some(Basis::BlockMean)) => Reading::BlockMean,
         (Some(true), Some(Basis::Peak)) => Reading::LinePeak,
         (Some(true), Some(Basis::Rms)) => Reading::LineRms,
@@ -240,7 +257,7 @@ fn read_back_emf<'a>(
         // A winding in error says nothing of a phase.
         (None, Some(_)) if phase => return None,
         _ => {
-            push_forms(&given, [phase, line], amplitude, shape, errors);
+            push_forms(&given, [phase, line], basis, shape, errors);
             return None;
         }
     };
@@ -280,11 +297,10 @@ fn push_forms(
         shape.map_or_else(
             || what.to_owned(),
             |shape| {
-                let constant = match given.dimension {
-                    Some(Dimension::SpeedConstant) => 1.0 / given.si,
-                    _ => given.si,
-                };
-                let torque = constant / reading.factor(shape) * shape.quasi_square_factor();
+                let given = given.clone();
+                // A flux linkage says its basis by itself.
+                let phase = Emf { given, reading }.phase_constant(shape, 1);
+                let torque = phase * shape.quasi_square_factor();
                 format!("{what}: {}", engineering(torque, "Nm/A"))
             },
         )
@@ -293,10 +309,7 @@ fn push_forms(
         .into_iter()
         .filter(fits)
         .map(|reading| {
-            let mut words = reading.words().to_owned();
-            if given.basis.contains(&Basis::PeakToPeak) {
-                words = words.replace("peak", "peak_to_peak");
-            }
+            let words = words(given, reading);
             (with_words(given, &words), meaning(reading))
         })
         .collect();
@@ -316,8 +329,8 @@ fn with_words(given: &Given, words: &str) -> String {
 }
 
 /// Whether nothing says of a speed constant if its voltage is the peak between two terminals or the mean over
-/// block commutation. Of a flat top they are one; of a sine makers of outrunners print the mean, and an
-/// oscilloscope shows the peak. A second constant gives it away.
+/// block commutation. With a flat top both are one number. With a sine they differ by 4.7 %: makers of outrunners
+/// print the mean, an oscilloscope shows the peak. A second constant tells which it is.
 fn is_open(reader: &Reader, shape: Option<EmfShape>) -> bool {
     let differ = |shape| {
         let [peak, mean] = [Reading::LinePeak, Reading::BlockMean].map(|of| of.factor(shape));
@@ -327,13 +340,13 @@ fn is_open(reader: &Reader, shape: Option<EmfShape>) -> bool {
     stated.count() == 1 && shape.is_some_and(differ)
 }
 
-/// A speed constant is over the peak between two terminals where nothing else is said, and need be.
+/// A speed constant refers to the peak between two terminals, unless its basis says otherwise.
 fn read_speed_constant<'a>(
     reader: &Reader<'a>,
     shape: Option<EmfShape>,
     errors: &mut Collector,
 ) -> Option<Emf<'a>> {
-    let mut given = reader.quantity(errors, "speed_constant")?;
+    let given = reader.quantity(errors, "speed_constant")?;
     let others: Vec<Basis> = given
         .basis
         .iter()
@@ -347,8 +360,8 @@ fn read_speed_constant<'a>(
         }
         [] | [Basis::Peak] => Reading::LinePeak,
         [Basis::PeakToPeak] => {
-            given.si *= 2.0;
-            Reading::LinePeak
+            let (given, reading) = (amplitude(given), Reading::LinePeak);
+            return Some(Emf { given, reading });
         }
         [Basis::Rms] => Reading::LineRms,
         [Basis::BlockMean] => Reading::BlockMean,

@@ -230,10 +230,7 @@ fn read_rated_current<'a>(
     let given = reader.quantity(errors, "rated_current")?;
     match given.basis {
         [] | [Basis::Peak] => Some(given),
-        [Basis::PeakToPeak] => Some(Given {
-            si: 0.5 * given.si,
-            ..given
-        }),
+        [Basis::PeakToPeak] => Some(emf::amplitude(given)),
         [Basis::Rms] => Some(Given {
             si: given.si * shape?.rated_peak(),
             ..given

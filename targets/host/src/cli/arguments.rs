@@ -124,17 +124,6 @@ pub enum Emit {
 }
 
 impl Emit {
-    /// The word of the option.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Rust => "rust",
-            Self::C99 => "c99",
-            Self::Ir => "ir",
-            Self::Datasheet => "datasheet",
-            Self::Gappa => "gappa",
-        }
-    }
-
     /// Ending of the file.
     pub fn ending(self) -> &'static str {
         match self {

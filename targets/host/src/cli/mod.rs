@@ -38,21 +38,13 @@ pub fn run() -> ExitCode {
             };
         }
     };
-    let outcome = match arguments.command {
-        None => commands::report::run_default(&arguments.output),
-        Some(command) => run_command(command),
+    let report = commands::report::Options {
+        motor: None,
+        board: None,
+        output: arguments.output,
     };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.print();
-            failure.exit_code()
-        }
-    }
-}
-
-fn run_command(command: Command) -> Result<(), Failure> {
-    match command {
+    let command = arguments.command.unwrap_or(Command::Report(report));
+    let outcome = match command {
         Command::Report(options) => commands::report::run(&options),
         Command::Generate(options) => commands::generate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
@@ -71,5 +63,12 @@ fn run_command(command: Command) -> Result<(), Failure> {
         Command::Check(options) => commands::check::run(&options),
         Command::Explain(options) => commands::explain::run(&options),
         Command::Completions(options) => commands::completions::run(&options),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.print();
+            failure.exit_code()
+        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::cli::{
     DriveArguments, Emit, Failure, note, print_json, print_text, tell_warnings, write_file,
 };
-use clap::Args;
+use clap::{Args, ValueEnum as _};
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_lab::engine::Prepared;
@@ -53,10 +53,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             Ok(())
         }
         (None, [File { text, .. }]) => print_text(text),
-        (None, _) => Err(Failure::Argument(format!(
-            "`--emit {}` makes several files; add `--out DIR`, or `--json`",
-            options.emit.word()
-        ))),
+        (None, _) => {
+            let emit = options.emit.to_possible_value();
+            let emit = emit.map_or(String::new(), |value| value.get_name().to_owned());
+            Err(Failure::Argument(format!(
+                "`--emit {emit}` makes several files; add `--out DIR`, or `--json`"
+            )))
+        }
     }
 }
 
@@ -75,7 +78,8 @@ struct Texts<'a> {
     files: &'a [File],
 }
 
-/// The files of a text, the same bytes for the same drive: one script each for Gappa, header and source of drive and runtime in C.
+/// The files of a text, the same bytes for the same drive: for Gappa one per script, in C header and
+/// source of drive and runtime.
 fn files_of(drive: &Prepared, emit: Emit) -> Vec<File> {
     match emit {
         Emit::Gappa => emit_gappa(&drive.generated.graph)

@@ -313,9 +313,7 @@ impl Draft {
         }
         text
     }
-}
 
-impl Draft {
     /// What the board states, but for what stands in the file itself, as comments.
     fn fields_of_board(&self) -> String {
         let Some((board, fields)) = &self.board else {

@@ -44,34 +44,23 @@ pub struct Output {
 /// # Errors
 /// No such motor, diagnostics, or a page that cannot be written.
 pub fn run(options: &Options) -> Result<(), Failure> {
+    let Output { out, all, json } = &options.output;
+    let folder = out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     let motor = options.motor.as_deref().unwrap_or(PAPER_MOTOR);
-    write(motor, options.board.as_deref(), &options.output)
-}
-
-/// The report on the paper's motor.
-///
-/// # Errors
-/// As [`run`].
-pub fn run_default(output: &Output) -> Result<(), Failure> {
-    write(PAPER_MOTOR, None, output)
-}
-
-fn write(motor: &str, board: Option<&str>, options: &Output) -> Result<(), Failure> {
-    let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
-    let plan = Plan::of(motor, board)?;
+    let plan = Plan::of(motor, options.board.as_deref())?;
     // An unwritable folder is reported before the long run.
     render::prepare_folder(&folder)?;
     let (data, checked) = plan.run(&Bar::default())?;
     let page = results_page(&data);
     let path = render::write(&page, &folder)?;
-    if options.json {
+    if *json {
         print_json(&page)?;
     } else {
         for warning in data.own.iter().flat_map(|own| &own.judgement.warnings) {
             note(warning);
         }
         print_text(&lines(&data, &path).join("\n"))?;
-        if options.all {
+        if *all {
             print_table(&variants_table(&data))?;
             for text in &data.notes {
                 print_text(text)?;

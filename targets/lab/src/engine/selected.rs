@@ -162,6 +162,18 @@ impl SelectedMotor {
         rotor.is_some_and(|field| field.value.to_string() == "angle")
     }
 
+    /// Whether motor file or board states a timer that captures Hall edges.
+    pub fn has_edge_timer(&self) -> bool {
+        let board = self
+            .ast
+            .board
+            .as_ref()
+            .and_then(|board| board.file.as_ref());
+        let sections = [Some(&self.ast.inverter), board.map(|file| &file.inverter)];
+        let mut sections = sections.into_iter().flatten();
+        sections.any(|section| section.field("hall_timer_clock").is_some())
+    }
+
     /// Like [`Self::prepare`], for commands with a torque set-point.
     ///
     /// # Errors

@@ -273,14 +273,7 @@ fn plan(
         return Err(LabError::Specification(reasons.join("\n")));
     }
     // What a board without an edge timer leaves out is told once, in the user's words.
-    let board = motor
-        .ast
-        .board
-        .as_ref()
-        .and_then(|board| board.file.as_ref());
-    let has_timer = motor.ast.inverter.field(TIMER).is_some()
-        || board.is_some_and(|file| file.inverter.field(TIMER).is_some());
-    if !has_timer && !has_angle {
+    if !motor.has_edge_timer() && !has_angle {
         left_out.retain(|(word, ..)| *word != "timer");
         notes.push(NO_TIMER.to_owned());
     }
@@ -297,9 +290,6 @@ fn plan(
     }));
     Ok(planned)
 }
-
-/// The field that says that there is an edge timer.
-const TIMER: &str = "hall_timer_clock";
 
 /// What a board without an edge timer has not.
 const NO_TIMER: &str = "Every row sees Hall edges at samples alone, half a period late on the mean: the motor file has no \

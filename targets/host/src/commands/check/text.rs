@@ -9,7 +9,7 @@ use hexagen_lab::text::significant;
 use hexagen_lab::times::sentence;
 use std::iter::repeat;
 
-/// What a torque of more than the demanded one is worth a word for.
+/// Torque of `max_current` over the demanded one above which it is told.
 const MORE: f64 = 1.01;
 
 /// About ten lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: each
@@ -58,7 +58,9 @@ fn of_defaults(judgement: &Judgement, with_reasons: bool) -> Vec<String> {
             .collect();
     }
     let choices: Vec<String> = choices.collect();
-    vec![format!("{} (--reasons)", choices.join(", "))]
+    // A file may state every option.
+    let line = (!choices.is_empty()).then(|| format!("{} (--reasons)", choices.join(", ")));
+    line.into_iter().collect()
 }
 
 fn of_motor(motor: &MotorSpec) -> String {
@@ -83,9 +85,10 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer",
         RotorSensing::Angle(_) => "an angle sensor",
     };
-    let v_bus = drive.spec.inverter.v_bus;
-    let nominal = judgement.points.iter().filter(|point| point.bus_v == v_bus);
-    let rates = nominal.filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
+    let (nominal, _) = judgement.runs();
+    let rates = nominal
+        .iter()
+        .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
     let mut rates: Vec<String> = rates.collect();
     rates.dedup();
     format!(
@@ -168,32 +171,27 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
 
 /// Torque and ripple, peak to peak of the means over a control period, of each run.
 fn of_torque(judgement: &Judgement) -> String {
-    let parts = judgement.points.iter().map(|point| {
-        let at = place(judgement, point);
-        match (point.torque_pct, point.tripped) {
-            (_, Some(_)) => format!("{at} trips"),
-            (Some(torque), None) => format!(
-                "{at} {} %, ripple {} %",
-                significant(torque, 3),
-                significant(point.ripple_pp_pct, 2)
-            ),
-            (None, None) => format!("{at} none"),
-        }
+    let (nominal, lowest) = judgement.runs();
+    let nominal = nominal
+        .iter()
+        .map(|point| of_run(&format!("at {:.0} rpm", point.rpm), point));
+    let lowest = lowest.iter().map(|point| {
+        let bus = engineering(point.bus_v, "V");
+        of_run(&format!("there on {bus}"), point)
     });
-    let parts: Vec<String> = parts.collect();
+    let runs: Vec<String> = nominal.chain(lowest).collect();
     let demand = engineering(judgement.torque_nm, "Nm");
-    format!("of {demand}: {}", parts.join("; "))
+    format!("of {demand}: {}", runs.join("; "))
 }
 
-/// Where a run was.
-fn place(judgement: &Judgement, point: &Point) -> String {
-    let is_nominal = judgement
-        .points
-        .first()
-        .is_some_and(|first| first.bus_v == point.bus_v);
-    if is_nominal {
-        format!("at {:.0} rpm", point.rpm)
-    } else {
-        format!("there on {}", engineering(point.bus_v, "V"))
+fn of_run(at: &str, point: &Point) -> String {
+    match (point.torque_pct, point.tripped) {
+        (_, Some(_)) => format!("{at} trips"),
+        (Some(torque), None) => format!(
+            "{at} {} %, ripple {} %",
+            significant(torque, 3),
+            significant(point.ripple_pp_pct, 2)
+        ),
+        (None, None) => format!("{at} none"),
     }
 }
