@@ -166,6 +166,7 @@ impl CommonModeRule {
         Limited {
             u: Phases([u_a, u_b]),
             centred: Phases([leg_a, leg_b, leg_c]),
+            cut: limited.cut,
         }
     }
 

@@ -242,21 +242,42 @@ pub fn model_target_emf<'b>(
     e_model
 }
 
-/// Current of phases a and b per ampere of set-point that is parallel to the EMF at the end of the
-/// target period; added to the open stage.
-pub fn proportional_shape<'b>(l: &Lowering<'b>, rotor: &Rotor<'b>, delay: u32) -> Phases<'b> {
-    let motor = &l.spec.motor;
-    let (shape, ratio) = (
-        motor.emf_shape,
-        l.spec.torque_constant() / motor.emf_constant,
-    );
-    let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
-    let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
-    let error = format!("{:.1e} A per ampere of set-point", fit.error);
-    let table = PeriodicTable::new(l, "shape", &fit, SHAPE_BITS, [doc, &error]);
-    let theta = ahead("theta_ref", rotor, delay + 1);
-    let theta_b = lagging(l, "theta_ref_b", theta);
-    Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)])
+/// Current per ampere of set-point that is parallel to the EMF.
+#[derive(Clone, Copy, Debug)]
+pub struct ProportionalShape<'b> {
+    table: PeriodicTable<'b>,
+    /// Angle at the end of the target period.
+    pub theta: Expr<'b>,
+    /// The current of phases a and b there.
+    pub unit: Phases<'b>,
+}
+
+impl<'b> ProportionalShape<'b> {
+    /// At the end of the target period; added to the open stage.
+    pub fn new(l: &Lowering<'b>, rotor: &Rotor<'b>, delay: u32) -> Self {
+        let motor = &l.spec.motor;
+        let (shape, ratio) = (
+            motor.emf_shape,
+            l.spec.torque_constant() / motor.emf_constant,
+        );
+        let fit = Parabolas::fit(|theta| proportional_current(shape, ratio, theta), 1e-5);
+        let doc = "Phase-a current per ampere of set-point that is parallel to the EMF, over the electrical angle";
+        let error = format!("{:.1e} A per ampere of set-point", fit.error);
+        let table = PeriodicTable::new(l, "shape", &fit, SHAPE_BITS, [doc, &error]);
+        let theta = ahead("theta_ref", rotor, delay + 1);
+        let theta_b = lagging(l, "theta_ref_b", theta);
+        let unit = Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)]);
+        Self { table, theta, unit }
+    }
+
+    /// At another angle, which `when` names; added to the open stage.
+    pub fn at(&self, l: &Lowering<'b>, when: &str, theta: Expr<'b>) -> Phases<'b> {
+        let theta_b = lagging(l, &format!("theta_{when}_b"), theta);
+        Phases([
+            self.table.at(&format!("shape_{when}_a"), theta),
+            self.table.at(&format!("shape_{when}_b"), theta_b),
+        ])
+    }
 }
 
 /// The words with as many zero bits behind them, at most 32 less those of a shape, as still fit, and the shift that takes
@@ -272,7 +293,7 @@ pub fn lifted<'b, const N: usize>(words: [(&str, Expr<'b>); N]) -> ([Expr<'b>; N
     (lifted, SHAPE_BITS + bits)
 }
 
-/// Reference along [`proportional_shape`], as voltage words of phases a and b; added to the open
+/// Reference along a [`ProportionalShape`], as voltage words of phases a and b; added to the open
 /// stage.
 pub fn proportional_reference<'b>(shape: Phases<'b>, set_point: Expr<'b>) -> Phases<'b> {
     let ([lifted], shift) = lifted([("j_lifted", set_point)]);

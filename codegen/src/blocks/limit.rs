@@ -17,6 +17,8 @@ pub struct Limited<'b> {
     /// Leg voltages of centred pulses: phase voltages less floor((max + min) / 2), plus half the
     /// period if the hexagon `lifts`.
     pub centred: Phases<'b, 3>,
+    /// Whether the voltage was outside.
+    pub cut: Flag<'b>,
 }
 
 /// A voltage before the limit.
@@ -116,6 +118,7 @@ impl<'b> Hexagon<'b> {
         Limited {
             u: Phases([u_a, u_b]),
             centred: Phases([centred_a, centred_b, centred_c]),
+            cut: saturated,
         }
     }
 

@@ -20,14 +20,15 @@ mod slew;
 mod speed;
 mod speed_ramp;
 mod speed_rise;
+mod weakening;
 
 pub use angle::AngleWords;
 pub use bus_current::BusCurrentLimit;
 pub use common_mode::CommonModeRule;
 pub use commutation::{Commutation, CommutationRule};
 pub use emf::{
-    Corner, ModelledEmf, SHAPE_BITS, lifted, model_emf, model_target_emf, proportional_reference,
-    proportional_shape, quasi_square_reference,
+    Corner, ModelledEmf, ProportionalShape, SHAPE_BITS, lifted, model_emf, model_target_emf,
+    proportional_reference, quasi_square_reference,
 };
 pub use fade::{Allowed, BusFade};
 pub use limit::{Hexagon, Limited, Priority};
@@ -42,6 +43,7 @@ pub use over_speed::{OVER_SPEED_COUNT, OVER_SPEED_EDGES};
 pub use rotor::{Rotor, RotorWords, advanced_sector, direction_word, sense_direction};
 pub use slew::SlewLimit;
 pub use speed::{Regulated, SpeedRegulator};
+pub use weakening::{FieldWeakening, Weakened};
 
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};

@@ -4,6 +4,7 @@ pub mod emf;
 mod envelope;
 mod plant;
 pub mod vectors;
+pub mod weakening;
 
 pub use envelope::Envelope;
 pub use plant::DiscretePlant;

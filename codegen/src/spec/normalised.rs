@@ -6,6 +6,7 @@ use super::{
     BusCurrents, BusSource, CurrentSensing, EmfShape, InverterSpec, MotorSpec, RotorSensing,
     SensedPhases, SensingTimes, Spec,
 };
+use crate::design::weakening::share_of_torque;
 use crate::spec::ControllerSpec;
 use std::fmt::{Debug, Display};
 
@@ -39,6 +40,9 @@ impl Spec {
             }
         }
         text.number("torque_constant", self.torque_constant());
+        if self.controller.common().field_weakening {
+            text.number("weakening_share", share_of_torque(motor.emf_shape));
+        }
         if self.angle_sensor().is_none() {
             text.number("hall_codes", motor.hall_codes);
         }
@@ -306,6 +310,7 @@ mod tests {
                     speed: None,
                     slew_rate: None,
                     residual_periods: None,
+                    field_weakening: false,
                 },
             }),
         }

@@ -52,6 +52,10 @@ pub struct Motor {
     pub emf_cosines: Option<[f64; 12]>,
     /// Torque per ampere of set-point, Nm/A.
     pub torque_constant: f64,
+    /// c2 and c4 of the torque that a current turned by a turns keeps, 1 - a^2 (c2 - c4 a^2); with field
+    /// weakening only.
+    #[serde(default)]
+    pub weakening_share: Option<[f64; 2]>,
     /// Hall codes of sectors 1 to 6, Ha in bit 2; with an angle sensor those of sensors in the usual order.
     #[serde(default = "usual_codes")]
     pub hall_codes: [u8; 6],
@@ -464,6 +468,12 @@ impl Spec {
             Controller::PiPwm(_) | Controller::PPwm(_) => return None,
         };
         Some(CommutationEnd { threshold, timeout })
+    }
+
+    /// c2 and c4 of the torque that a turned current keeps; with field weakening only.
+    pub fn weakening_share(&self) -> Option<[f64; 2]> {
+        let is_on = self.loop_options().field_weakening == Switch::On;
+        self.motor.weakening_share.filter(|_| is_on)
     }
 
     fn check(&self) -> Result<(), Error> {

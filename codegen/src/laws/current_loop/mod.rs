@@ -19,8 +19,8 @@ pub use words::{EmfUse, Needs, Words};
 
 use crate::blocks::set_point::{Gain, SetPointWords};
 use crate::blocks::{
-    Applied, Bus, Command, Commutation, Corner, Hall, Lowering, OffLeg, Rotor, Sample, Scale,
-    advanced_sector, find_sector, proportional_reference, proportional_shape,
+    Applied, Bus, Command, Commutation, Corner, Hall, Limited, Lowering, OffLeg, ProportionalShape,
+    Rotor, Sample, Scale, Weakened, advanced_sector, find_sector, proportional_reference,
     quasi_square_reference, sample, sector_of, sense_direction, third_current,
 };
 use crate::ir::{Coefficient, Expr, Memory, Named, Phase, Phases, ProgramBuilder, Told, named};
@@ -103,6 +103,8 @@ pub struct Front<'b> {
     pub emf_error: Option<[Expr<'b>; 2]>,
     /// Count of the residual watch, and its new value; with a `residual_timeout` only.
     pub residual_count: Option<(Memory<'b>, Expr<'b>)>,
+    /// Angle of the reference against the field; with field weakening only.
+    pub weakened: Option<Weakened<'b>>,
     /// The folded words; with a held EMF only.
     pub held: Option<Held<'b>>,
     /// Word of the set-point's source, and its new value: the integral of the speed regulator, or the
@@ -171,6 +173,15 @@ impl<'b> Front<'b> {
     pub fn net_now(&self) -> Option<Phases<'b>> {
         self.net.or_else(|| net_voltage(self.now, self.e_now))
     }
+
+    /// The reference's angle against the field for the next step, in a stage of its own; nothing without
+    /// field weakening.
+    pub fn turned(&self, l: &Lowering<'b>, limited: &Limited<'b>) -> Remembered<'b> {
+        let turned = self
+            .weakened
+            .map(|weakened| weakened.follow(l, limited.cut));
+        turned.into_iter().collect()
+    }
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
@@ -190,17 +201,24 @@ impl<'b> CurrentLoop<'_, 'b> {
         let commutation = self.commutation(&words, &tracked, [sector, j], currents);
         // Before the reference, so that the reference's product with a sign is added last.
         let held = self.holds_emf().then(|| self.held(currents.pair()));
-        let (reference, shape) = self.reference(&tracked, sector, j);
+        let (along, shape) = self.reference(&tracked, sector, j);
         let doc = "Mean of three legs.";
         let third = l.coefficient("k_third", 1.0 / 3.0, options.word, doc, "1/3");
         let bus = set_point.read_bus(l);
+        let (reference, weakened) = match words.weakening.zip(shape) {
+            Some((weakening, shape)) => {
+                let (reference, weakened) = weakening.reference(l, &shape, j, along);
+                (reference, Some(weakened))
+            }
+            None => (along, None),
+        };
         let outgoing = commutation.map(|commutation| commutation.outgoing);
         let rotor = tracked.rotor.as_ref();
         let emf = self.emf(
             &words,
             currents,
             sector_seen,
-            (rotor.map(|rotor| (rotor, shape)), j),
+            (rotor.map(|rotor| (rotor, shape.map(|shape| shape.unit))), j),
             third,
             outgoing,
         );
@@ -233,6 +251,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             net,
             emf_error: emf.and_then(|emf| emf.error),
             residual_count: emf.and_then(|emf| emf.residual_count),
+            weakened,
             held,
             of_set_point: demand.words,
         }
@@ -353,7 +372,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         tracked: &Tracked<'b>,
         sector: Expr<'b>,
         set_point: Expr<'b>,
-    ) -> (Phases<'b>, Option<Phases<'b>>) {
+    ) -> (Phases<'b>, Option<ProportionalShape<'b>>) {
         let (l, options) = (self.l, self.options);
         let is_proportional = options.reference == Reference::Proportional;
         let shape = tracked.rotor.filter(|_| is_proportional || self.observes()).map(|rotor| {
@@ -364,10 +383,10 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let doc = "Direction of the EMF at the end of the target period.";
                 l.b.stage("emf_direction", &[doc]);
             }
-            proportional_shape(l, &rotor, options.delay)
+            ProportionalShape::new(l, &rotor, options.delay)
         });
         let reference = match shape {
-            Some(shape) if is_proportional => proportional_reference(shape, set_point),
+            Some(shape) if is_proportional => proportional_reference(shape.unit, set_point),
             _ if options.advance > 0.0 => {
                 quasi_square_reference(l, Corner::Sector(sector), set_point)
             }

@@ -4,8 +4,8 @@ use super::CurrentLoop;
 use super::residual::ResidualWatch;
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{
-    AngleWords, BusCurrentLimit, BusFade, CommutationRule, RotorWords, SlewLimit, SpeedRegulator,
-    direction_word, sector_word,
+    AngleWords, BusCurrentLimit, BusFade, CommutationRule, FieldWeakening, RotorWords, SlewLimit,
+    SpeedRegulator, direction_word, sector_word,
 };
 use crate::ir::{Interval, Memory};
 use crate::spec::{EmfSource, Reference};
@@ -86,6 +86,8 @@ pub struct Words<'b> {
     pub net_next: Option<[Memory<'b>; 2]>,
     /// Error of the modelled EMF, q and d.
     pub emf_error: Option<[Memory<'b>; 2]>,
+    /// Field weakening.
+    pub weakening: Option<FieldWeakening<'b>>,
     /// Residual watch.
     pub residual: Option<ResidualWatch<'b>>,
 }
@@ -182,6 +184,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 l.memories(["net_a_next", "net_b_next"], nets, doc)
             }),
             emf_error: observes.then(|| self.emf_error_words()),
+            weakening: (options.field_weakening).then(|| FieldWeakening::new(l, set_point)),
             residual: (options.residual_periods)
                 .map(|periods| ResidualWatch::new(l, periods, set_point)),
         }

@@ -47,11 +47,12 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
+        let turned = front.turned(l, &limited);
         let modulator = Modulator {
             bus: front.bus,
             shifts: None,
         };
         let command = modulator.three(l, &limited, common_mode);
-        step.remember(&front, &command, Some(limited.u), None, vec![]);
+        step.remember(&front, &command, Some(limited.u), None, turned);
     })
 }

@@ -51,6 +51,7 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
+        let turned = front.turned(l, &limited);
         let modulator = Modulator {
             bus: front.bus,
             shifts,
@@ -63,6 +64,6 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 (command, Some(applied))
             }
         };
-        step.remember(&front, &command, Some(limited.u), applied, vec![]);
+        step.remember(&front, &command, Some(limited.u), applied, turned);
     })
 }

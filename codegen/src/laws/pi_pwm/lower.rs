@@ -127,6 +127,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         };
         let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
+        let mut remembered = front.turned(l, &limited);
         l.b.stage("integrate", INTEGRATION);
         let target = front.e.map_or(limited.u, |e| limited.u - e);
         named! {
@@ -139,7 +140,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
             shifts,
         };
         let command = modulator.three(l, &limited, common_mode);
-        let remembered = kept(memories, integral_now).to_vec();
+        remembered.extend(kept(memories, integral_now));
         step.remember(front, &command, Some(limited.u), None, remembered);
     }
 

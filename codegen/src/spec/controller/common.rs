@@ -3,7 +3,7 @@
 use super::core::{Core, Target};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering};
-use crate::spec::options::{Row, number, word};
+use crate::spec::options::{Row, if_on, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;
@@ -111,6 +111,8 @@ pub struct LoopOptions {
     pub slew_rate: Option<f64>,
     /// Time-out of the residual watch, control periods; none: the currents are not watched.
     pub residual_periods: Option<u32>,
+    /// Whether the reference turns against the field where the voltage ends.
+    pub field_weakening: bool,
 }
 
 /// The choice of controller.
@@ -181,6 +183,12 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .off("the currents are not compared with the voltages")
             .about("Time, net of periods in which they do, after which currents that do not follow the voltages as the motor's data say trip the drive: a dead current sensor, an open or exchanged phase, wrong motor data; 50 control periods to 65,535; only with `emf: observer`"),
         |options| Some(number(options.residual_periods?)),
+    ),
+    Row::of(
+        rule::choice::<bool>("field_weakening", "on")
+            .preset("off")
+            .about("Torque above the speed at which the bus voltage ends: the current turns against the field; only with `reference: proportional` where pulse-width modulation drives all three legs; needs a `maximum_speed` whose EMF the bus bears, or a `bus_clamp`"),
+        |options| if_on(options.field_weakening),
     ),
     Row::of(
         rule::plain("advance", 0.0, 2.0, "1.5")
@@ -420,6 +428,7 @@ pub(crate) fn read_common(
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
     let emf_in_use = traits.uses_emf.then_some(emf);
     let residual_periods = read_residual_timeout(reader, surroundings, emf_in_use, errors);
+    let field_weakening = read_field_weakening(reader, traits, reference, errors);
 
     if let Some(advance) = advanced
         && reference == Reference::Proportional
@@ -449,6 +458,7 @@ pub(crate) fn read_common(
         speed,
         slew_rate,
         residual_periods,
+        field_weakening,
     })
 }
 
@@ -468,6 +478,24 @@ fn read_reference(
     reader
         .choice(errors, "reference", &[])
         .unwrap_or(by_default)
+}
+
+/// Field weakening turns a reference that follows the rotor's angle, by what a limit of the voltage tells.
+fn read_field_weakening(
+    reader: &Reader,
+    traits: Traits,
+    reference: Reference,
+    errors: &mut Collector,
+) -> bool {
+    const OPTION: &str = "field_weakening";
+    let is_on = reader.switch(errors, OPTION) == Some(true);
+    if is_on && !(traits.pulses_three_legs && reference == Reference::Proportional) {
+        let quasi_square = ["reference", "quasi_square"];
+        let why = "only a `proportional` reference with all three legs pulsed in every period can turn against the field";
+        refuse(reader, OPTION, quasi_square, why, errors);
+        return false;
+    }
+    is_on
 }
 
 /// An estimated EMF is late where the EMF turns fast, and so is the torque. A modelled one is not: it

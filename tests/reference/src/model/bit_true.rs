@@ -23,6 +23,7 @@ mod slew;
 mod speed;
 mod state;
 mod tables;
+mod weakening;
 
 use super::angle::AngleSensor;
 use super::hall::HallClock;
@@ -46,6 +47,7 @@ use residual::ResidualWatch;
 use slew::Slew;
 use speed::Regulator;
 use state::State;
+use weakening::FieldWeakening;
 
 /// Fraction bits of the ratio of two sensors' gains.
 const RATIO_BITS: i32 = 15;
@@ -64,6 +66,7 @@ pub struct BitTrue<W: Word = f64> {
     speed: Option<Regulator<W>>,
     ramp: Option<Ramp>,
     slew: Option<Slew>,
+    weakening: Option<FieldWeakening<W>>,
     fade: Option<Fade<W>>,
     bus_current: Option<BusCurrent<W>>,
     residual: Option<ResidualWatch<W>>,
@@ -148,6 +151,7 @@ impl<W: Word> BitTrue<W> {
             speed,
             ramp: Ramp::new(spec, &scale)?,
             slew: Slew::new(spec, &scale, &k)?,
+            weakening: FieldWeakening::new(spec, &scale, &k)?,
             fade: Fade::new(spec, &scale)?,
             bus_current: BusCurrent::new(spec, &scale, &k)?,
             residual: ResidualWatch::new(spec, &scale)?,
@@ -436,9 +440,9 @@ impl<W: Word> BitTrue<W> {
 
         // 6 reference
         let delayed = self.variant.delayed();
+        let theta_ref = angle.theta + angle.speed.step * if delayed { 2.0 } else { 1.0 };
         let shape = if self.variant.shaped() {
-            let ahead = if delayed { 2.0 } else { 1.0 };
-            k.shape.both(angle.theta + angle.speed.step * ahead)
+            k.shape.both(theta_ref)
         } else {
             [word(0.0); 2]
         };
@@ -448,6 +452,11 @@ impl<W: Word> BitTrue<W> {
                 j * sector::CORNER_B[sector_eff],
             ],
             Reference::Proportional => shape.map(|shape| k.shape_product.floor_product(shape, j)),
+        };
+        let mut weakening = self.state.weakening;
+        let (j_ref, rise) = match &self.weakening {
+            Some(field) => field.reference(k, [theta_ref, weakening], shape, j, j_ref),
+            None => (j_ref, word(0.0)),
         };
 
         // 8 EMF
@@ -533,6 +542,9 @@ impl<W: Word> BitTrue<W> {
             vector_prev: self.state.vector_prev.0,
             past: self.state.past,
         });
+        if let Some(field) = &self.weakening {
+            weakening = field.follow(weakening, rise, decision.reach != Reach::Inside);
+        }
         let command = match verdict.period {
             Period::Control => decision.command,
             Period::Low => Command::idle(Legs::LOW),
@@ -576,6 +588,7 @@ impl<W: Word> BitTrue<W> {
             self.state.e_prev = e_now;
             self.state.e_next = e;
             self.state.emf_error = emf_error;
+            self.state.weakening = weakening;
             self.state.residual_count = residual_count;
             self.state.speed_integral = speed_integral;
             self.state.speed_in_force = speed_in_force;

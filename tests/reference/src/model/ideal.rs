@@ -13,7 +13,7 @@ use super::angle::AngleSensor;
 use super::hall::{GREATEST_CHANGE, HallClock, RISE};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
-use super::trace::{Past, PhysicalState, Trace};
+use super::trace::{Past, PhysicalState, Reach, Trace};
 use super::variant::{Variant, allowed_residual, emf_error_limit, emf_limit};
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
@@ -29,6 +29,11 @@ use vector::{clarke, from_ab, phases, to_ab};
 
 /// Radians of an angle word.
 const RADIANS: f64 = TAU / 4_294_967_296.0;
+
+/// Greatest angle of the reference against the field, turns.
+const MOST_TURN: f64 = 75.0 / 360.0;
+/// Its change in a period.
+const WEAKENING_STEP: f64 = MOST_TURN / 128.0;
 
 /// Exact leg commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,6 +104,8 @@ pub struct Ideal {
     speed_step: f64,
     /// Greatest change of the set-point in a period, ampere; 0 for any.
     slew_step: f64,
+    /// c2 and c4 of the torque that a turned current keeps; with field weakening only.
+    weakening_share: Option<[f64; 2]>,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
     fades: [Option<[f64; 2]>; 2],
     /// Greatest bus current, drawn and returned, ampere.
@@ -168,6 +175,7 @@ impl Ideal {
             t_s: inverter.t_s,
             speed_step: spec.loop_options().acceleration_limit * inverter.t_s,
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
+            weakening_share: spec.weakening_share(),
             fades: [inverter.braking_fade, inverter.motoring_fade],
             bus_currents: [inverter.bus_current_limit, inverter.return_current_limit],
             dead_share: spec.dead_share(),
@@ -184,6 +192,31 @@ impl Ideal {
         ideal.state.offset = ideal.limits.adc_offset;
         ideal.state.supervisor.start(&ideal.limits);
         Ok(ideal)
+    }
+
+    /// Proportional current of one ampere at an electrical angle.
+    fn proportional(&self, theta: f64) -> Vector2<f64> {
+        let f = self.shape.alpha_beta(theta);
+        f * (2.0 / 3.0 * self.k_t / self.k_phase / f.norm_squared())
+    }
+
+    /// The reference turned against the field, and the rise of the angle if the voltage is cut (section
+    /// "Field weakening"). `shape`: the current of one ampere along the EMF at the angle `theta`.
+    fn weakened(
+        &self,
+        [square, fourth]: [f64; 2],
+        theta: f64,
+        shape: &Vector2<f64>,
+        current: f64,
+    ) -> (Vector2<f64>, f64) {
+        let turn = self.state.weakening;
+        let sign = if current >= 0.0 { 1.0 } else { -1.0 };
+        let share = 1.0 - turn * turn * (square - fourth * turn * turn);
+        let surplus = (self.max_current * share - current.abs()).max(0.0);
+        let turned = self.proportional(theta + sign * TAU * turn);
+        let i_ref = (turned * self.max_current - shape * surplus) * sign;
+        let slower = if surplus > 0.0 { 1.0 } else { 4.0 };
+        (i_ref, WEAKENING_STEP / slower)
     }
 
     /// Sets the current set-point, ampere; saturates at the largest current.
@@ -390,13 +423,18 @@ impl Ideal {
 
         // 6 reference
         let target = f64::from(1 + self.variant.options.delay) * step_angle;
-        let f = self.shape.alpha_beta(theta + target);
-        let shape = f * (2.0 / 3.0 * self.k_t / self.k_phase / f.norm_squared());
+        let shape = self.proportional(theta + target);
         let i_ref = match self.variant.options.reference {
             Reference::QuasiSquare => {
                 from_ab(sector::CORNER_A[sector_eff], sector::CORNER_B[sector_eff]) * current
             }
             Reference::Proportional => shape * current,
+        };
+        let (i_ref, rise) = match self.weakening_share {
+            Some(share) if self.state.weakening > 0.0 => {
+                self.weakened(share, theta + target, &shape, current)
+            }
+            _ => (i_ref, WEAKENING_STEP),
         };
 
         // 8 EMF
@@ -494,6 +532,16 @@ impl Ideal {
         let legs = command.duties.to_legs(self.timer_period);
         self.state.supervisor.follow_legs(&self.limits, legs);
 
+        let weakening = if self.weakening_share.is_some() {
+            let change = match decision.reach {
+                Reach::Inside => -WEAKENING_STEP,
+                Reach::Outside | Reach::PastReach => rise,
+            };
+            (self.state.weakening + change).clamp(0.0, MOST_TURN)
+        } else {
+            0.0
+        };
+
         // 12 remember
         self.state.i_prev = [i_a, i_b];
         self.state.sector_prev = sector;
@@ -520,6 +568,7 @@ impl Ideal {
             self.state.e_prev = to_ab(&e_now);
             self.state.e_next = to_ab(&e);
             self.state.emf_error = emf_error;
+            self.state.weakening = weakening;
             self.state.residual_count = residual_count;
             self.state.speed_integral = speed_integral;
             self.state.speed_in_force = speed_in_force;
@@ -541,6 +590,7 @@ impl Ideal {
             self.state.net_prev = [0.0; 2];
             self.state.net_next = [0.0; 2];
             self.state.emf_error = [0.0; 2];
+            self.state.weakening = 0.0;
             self.state.residual_count = 0.0;
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;

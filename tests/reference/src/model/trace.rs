@@ -90,6 +90,8 @@ pub struct PhysicalState {
     pub net_next: [f64; 2],
     /// Error of the modelled EMF: q along the proportional current, d across it over sqrt(3), volt.
     pub emf_error: [f64; 2],
+    /// Angle of the reference against the field, electrical turns.
+    pub weakening: f64,
     /// Periods in which the currents did not follow the voltages, less those in which they did.
     pub residual_count: f64,
     /// Integral part of the voltage (PI), phases a, b, volt.

@@ -45,6 +45,8 @@ pub struct LoopOptions {
     pub slew_rate: f64,
     /// Time-out of the residual watch, control periods; 0 where the currents are not watched.
     pub residual_periods: u32,
+    /// Whether the reference turns against the field where the voltage ends.
+    pub field_weakening: Switch,
 }
 
 impl LoopOptions {
@@ -99,6 +101,9 @@ macro_rules! options {
             /// Time-out of the residual watch, control periods; 0 where the currents are not watched.
             #[serde(default, rename = "residual_timeout")]
             pub residual_periods: u32,
+            /// Whether the reference turns against the field where the voltage ends.
+            #[serde(default)]
+            pub field_weakening: Switch,
             $($(#[$doc])* pub $field: $kind,)*
         }
 
@@ -117,6 +122,7 @@ macro_rules! options {
                     acceleration_limit: self.acceleration_limit,
                     slew_rate: self.slew_rate,
                     residual_periods: self.residual_periods,
+                    field_weakening: self.field_weakening,
                 }
             }
         }

@@ -328,6 +328,7 @@ impl<W: Word> Constants<W> {
                     variant.observes() && variant.delayed() && !floating,
                 ),
                 (Part::EmfError, variant.observes()),
+                (Part::Weakening, spec.weakening_share().is_some()),
                 (Part::Residual, variant.options.residual_periods > 0),
                 (Part::Integral, variant.six_step == Some(Switch::Off)),
                 (Part::PairIntegral, variant.six_step == Some(Switch::On)),

@@ -26,6 +26,7 @@ pub enum Part {
     NetNext,
     VoltageMemory,
     EmfError,
+    Weakening,
     Residual,
     Integral,
     PairIntegral,

@@ -100,6 +100,7 @@ impl State<f64> {
             net_prev: volts(self.net_prev),
             net_next: volts(self.net_next),
             emf_error: volts(self.emf_error),
+            weakening: self.weakening * pow2(-32),
             residual_count: self.residual_count,
             integral: volts(self.integral),
             rises: self

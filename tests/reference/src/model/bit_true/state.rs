@@ -45,6 +45,7 @@ pub struct State<W: Word> {
     pub net_next: [W; 2],
     /// `e_error_q`, `e_error_d`.
     pub emf_error: [W; 2],
+    pub weakening: W,
     pub residual_count: W,
     pub integral: [W; 2],
     /// `h_a`, `h_b`; unless stored in the contributions of past periods.
@@ -287,6 +288,9 @@ macro_rules! for_each_word {
             $show!("e_error_q", $state.emf_error[0]);
             $show!("e_error_d", $state.emf_error[1]);
         }
+        if $parts.has(Part::Weakening) {
+            $show!("weakening", $state.weakening);
+        }
         if $parts.has(Part::Residual) {
             $show!("residual_count", $state.residual_count);
         }
@@ -365,6 +369,7 @@ impl<W: Word> State<W> {
         self.net_prev = [word(0.0); 2];
         self.net_next = [word(0.0); 2];
         self.emf_error = [word(0.0); 2];
+        self.weakening = word(0.0);
         self.residual_count = word(0.0);
         self.integral = [word(0.0); 2];
         self.hysteresis = [word(0.0); 2];

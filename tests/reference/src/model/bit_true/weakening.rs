@@ -1,0 +1,89 @@
+//! Field weakening (section "Field weakening").
+
+use super::constants::{Constants, Scale};
+use crate::exact::{
+    Coefficient, Shift, Word, both, either, floor_shift, greater, pow2, round_half_up, within, word,
+};
+use crate::{Error, Spec};
+
+/// Greatest angle of the reference, turns.
+const MOST_TURN: f64 = 75.0 / 360.0;
+/// Periods in which it is reached while current is left.
+const RISE: f64 = 128.0;
+/// Fraction bits of the share of the torque.
+const SHARE_BITS: u32 = 30;
+/// Fraction bits of its slope.
+const SLOPE_BITS: u32 = 26;
+
+/// Constants of the field weakening.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldWeakening<W> {
+    /// Greatest set-point word.
+    top: W,
+    most: f64,
+    step: f64,
+    slope: f64,
+    k_weakening: Coefficient<W>,
+    square: Shift,
+    loss: Shift,
+    share: Shift,
+}
+
+impl<W: Word> FieldWeakening<W> {
+    /// `None` without field weakening.
+    pub fn new(spec: &Spec, scale: &Scale, k: &Constants<W>) -> Result<Option<Self>, Error> {
+        let Some([square, fourth]) = spec.weakening_share() else {
+            return Ok(None);
+        };
+        let turn = |turns: f64| round_half_up(turns * pow2(32));
+        Ok(Some(Self {
+            top: k.k_set.mul(word(k.i_max_bits)),
+            most: turn(MOST_TURN),
+            step: turn(MOST_TURN / RISE),
+            slope: round_half_up(square * pow2(SLOPE_BITS as i32)),
+            k_weakening: scale.coefficient("k_weakening", fourth * pow2(SLOPE_BITS as i32 - 32))?,
+            square: Shift::new(32),
+            loss: Shift::new(32 + SLOPE_BITS - SHARE_BITS),
+            share: Shift::new(SHARE_BITS),
+        }))
+    }
+
+    /// The reference, and the rise of the angle if the voltage is cut: `along` is the reference along the EMF,
+    /// `shape` that of one ampere, at the angle `theta`.
+    #[inline]
+    pub fn reference(
+        &self,
+        k: &Constants<W>,
+        [theta, angle]: [W; 2],
+        shape: [W; 2],
+        j: W,
+        along: [W; 2],
+    ) -> ([W; 2], W) {
+        let step: W = word(self.step);
+        if angle <= 0.0 {
+            return (along, step);
+        }
+        let pushes = j >= 0.0;
+        let turned = k.shape.both(theta + either(pushes, angle, -angle));
+        let square = self.square.floor_product(angle, angle);
+        let slope = word::<W>(self.slope) - self.k_weakening.mul(square);
+        let share = word::<W>(pow2(SHARE_BITS as i32)) - self.loss.floor_product(square, slope);
+        let most = self.share.floor_product(share, self.top);
+        let surplus = greater(most - either(pushes, j, -j), 0.0);
+        let turned = both(|x| {
+            k.shape_product.floor_product(turned[x], self.top)
+                - k.shape_product.floor_product(shape[x], surplus)
+        });
+        let slow = floor_shift(step, 2);
+        (
+            turned.map(|turned| either(pushes, turned, -turned)),
+            either(surplus > 0.0, step, slow),
+        )
+    }
+
+    /// The angle's new value.
+    #[inline]
+    pub fn follow(&self, angle: W, rise: W, cut: bool) -> W {
+        within(angle + either(cut, rise, word(-self.step)), 0.0, self.most)
+    }
+}
