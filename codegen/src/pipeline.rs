@@ -2,8 +2,9 @@
 
 use crate::at_once::at_once;
 use crate::design::Envelope;
+use crate::design::weakening::last_speed;
 use crate::diagnostics::{
-    Code, Collector, Diagnostic, Diagnostics, catalogue, engineering, percent,
+    Code, Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, rpm,
 };
 use crate::interface::Interface;
 use crate::ir::VerifiedGraph;
@@ -14,7 +15,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{Origins, Spec};
+use crate::spec::{InverterSpec, Origins, Spec};
 use crate::stopwatch::Part;
 use crate::timing::StepTime;
 
@@ -115,6 +116,7 @@ pub fn warnings(spec: &Spec, origins: &Origins, times: &[StepTime]) -> Vec<Diagn
         ));
     }
     warnings.extend(warn_of_bus(spec, origins));
+    warnings.extend(warn_of_weakening(spec, origins));
     warnings.extend(warn_of_watch(spec, origins));
     warnings.extend(warn_of_trip(spec, origins));
     warnings.extend(times.iter().filter_map(|time| warn_of_time(time, origins)));
@@ -160,6 +162,26 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
         let given = origins.given(SPEED, "");
         catalogue::rating_beyond_bus((origins.at(SPEED), &given), &beyond)
     })
+}
+
+/// Warns of a greatest speed at which field weakening no longer suffices.
+fn warn_of_weakening(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
+    const SPEED: &str = "inverter.maximum_speed";
+    let InverterSpec {
+        maximum_speed,
+        max_current,
+        v_bus,
+        ..
+    } = spec.inverter;
+    if !spec.controller.common().field_weakening {
+        return None;
+    }
+    let last = last_speed(&Envelope::of(spec), maximum_speed)?;
+    let given = origins.given(SPEED, &rpm(maximum_speed));
+    Some(catalogue::weakening_ends(
+        (origins.at(SPEED), &given),
+        [max_current, v_bus, last],
+    ))
 }
 
 /// Warns of a residual watch whose allowance at standstill and full current exceeds half the bus, about what a dead

@@ -161,6 +161,19 @@ const SHARED: &[Row] = &[
         ],
     ),
     (
+        "field_weakening",
+        &[
+            ("off", &[]),
+            (
+                "on",
+                &[
+                    ("controller", "field_weakening", "\"on\""),
+                    ("inverter", "bus_clamp", "\"2 kV\""),
+                ],
+            ),
+        ],
+    ),
+    (
         "delay",
         &[
             ("1", &[("controller", "delay", "1")]),

@@ -131,6 +131,8 @@ codes! {
     OverSpeed = 323,
     /// A stall time-out within which a ramp of the speed may reverse without a Hall edge.
     StallTimeout = 324,
+    /// A speed at which the EMF exceeds the bus, with field weakening.
+    EmfAboveBus = 325,
     /// A bus voltage that the board is not made for.
     OutsideOfBoard = 330,
     /// A controller that does not exist.
@@ -177,6 +179,8 @@ codes! {
     StepExceedsPeriod = 614,
     /// Overshoot and ripple may reach the trip current without a fault.
     TripNearSetPoint = 615,
+    /// A speed at which field weakening no longer holds the EMF within the bus.
+    WeakeningEnds = 616,
     /// An internal error of the generator.
     Internal = 901,
 }

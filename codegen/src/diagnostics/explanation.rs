@@ -310,6 +310,12 @@ impl Code {
                 "stall_timeout = \"500 ms\"\nbus_voltage = \"48 V\"\ninertia = \"2e-3 kg m2\"\nspeed_loop = \"on\"\nacceleration_limit = \"500 rpm/s\"",
                 "Lengthen the time-out, or raise acceleration_limit.",
             ),
+            Self::EmfAboveBus => say(
+                "Field weakening drives the motor at speeds at which its EMF exceeds the bus. Legs that turn off there, by a trip or `coast()`, become a rectifier: the motor drives current into the bus until it has slowed down, and only a clamp holds the voltage.",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"3200 rpm\"\nkind = \"pdcc\"\nfield_weakening = \"on\"",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"3200 rpm\"\nbus_clamp = \"56 V\"\nkind = \"pdcc\"\nfield_weakening = \"on\"",
+                "Lower maximum_speed, or state bus_clamp: a brake chopper, or a battery that takes the current.",
+            ),
             Self::BusMeasurement => say(
                 "The limits of a measured bus lie on either side of the nominal voltage, inside the ADC's range.",
                 "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"50 V\"\nbus_voltage = \"48 V\"",
@@ -480,7 +486,7 @@ impl Code {
                 "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",
                 "rated_speed = \"2500 rpm\"",
                 "rated_speed = \"2000 rpm\"",
-                "Nothing is wrong with the drive. A little beyond, torque ripples; farther, it falls: `hexagen check` simulates the drive, and `hexagen limit` finds where its mean torque ends. Raise the bus, or state the speed that is meant under load.",
+                "Nothing is wrong with the drive. A little beyond, torque ripples; farther, it falls: `hexagen check` simulates the drive, and `hexagen limit` finds where its mean torque ends. Raise the bus, or state the speed that is meant under load. `field_weakening: on` makes more torque there, with ripple.",
             ),
             Self::TripFarAbove => say(
                 "A fault makes as much current as the trip level before the drive stops.",
@@ -511,6 +517,12 @@ impl Code {
                 "bus_voltage = \"48 V\"\nmax_current = \"36 A\"",
                 "bus_voltage = \"48 V\"\nmax_current = \"30 A\"",
                 "Lower max_current, or take sensors that reach farther: by adc_range, or by a smaller shunt or amplifier_gain.",
+            ),
+            Self::WeakeningEnds => say(
+                "Field weakening takes the voltage omega L I from the EMF, with I at most max_current. At high speed that no longer brings the voltage within the bus: the motor brakes, whatever the set-point. A motor of small inductance has little to gain.",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"4500 rpm\"\nbus_clamp = \"80 V\"\nkind = \"pdcc\"\nfield_weakening = \"on\"",
+                "bus_voltage = \"48 V\"\nmaximum_speed = \"3200 rpm\"\nbus_clamp = \"80 V\"\nkind = \"pdcc\"\nfield_weakening = \"on\"",
+                "Lower maximum_speed to the speed in the message, or raise max_current if motor and sensors bear it.",
             ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",

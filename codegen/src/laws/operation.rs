@@ -4,6 +4,7 @@ use super::current_loop::{Allowance, LoopDesign};
 use super::start::start_rpm;
 use crate::blocks::OVER_SPEED_EDGES;
 use crate::design::vectors::SECTOR_CURRENT;
+use crate::design::weakening::MOST_TURN;
 use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
 use crate::spec::{
     BusCurrents, BusSource, CurrentSensor, CurrentSum, InverterSpec, RotorSensing, SensedPhases,
@@ -227,6 +228,7 @@ fn trips(spec: &Spec) -> Vec<String> {
         }
     });
     lines.extend(over_speed(spec));
+    lines.extend(field_weakening(spec));
     if inverter.hall_glitches > 0 {
         lines.push(format!(
             "A disturbed Hall code is bridged for {} samples in a row, and trips it then.",
@@ -234,6 +236,34 @@ fn trips(spec: &Spec) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// What field weakening does, and what a trip does where the EMF exceeds the bus.
+fn field_weakening(spec: &Spec) -> Option<String> {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    if !spec.controller.common().field_weakening {
+        return None;
+    }
+    let emf = inverter.maximum_speed * motor.emf_constant * motor.emf_shape.line_to_line_peak();
+    let bus = inverter
+        .bus_clamp
+        .unwrap_or_else(|| inverter.greatest_bus());
+    let rectified = (emf - bus) / (2.0 * motor.resistance);
+    let danger = if rectified > 0.0 {
+        format!(
+            "; at {} the EMF is {}, and a trip or `coast()` drives up to {} into the bus, which its clamp holds at {}",
+            rpm(inverter.maximum_speed),
+            engineering(emf, "V"),
+            engineering(rectified, "A"),
+            engineering(bus, "V"),
+        )
+    } else {
+        String::new()
+    };
+    let most = (360.0 * MOST_TURN).round();
+    Some(format!(
+        "Where the bus voltage ends, the current turns against the field by up to {most} degrees, with up to `max_current` whatever the set-point{danger}."
+    ))
 }
 
 /// The speed that trips the drive, and how well it is measured.

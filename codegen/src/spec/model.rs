@@ -361,6 +361,8 @@ pub struct InverterSpec {
     pub trip_current: f64,
     /// Largest set-point, ampere.
     pub max_current: f64,
+    /// Voltage at which the board holds its bus while the motor drives current into it, volt.
+    pub bus_clamp: Option<f64>,
     /// Limits of the bus current.
     pub bus_currents: BusCurrents,
     /// What tells the rotor's position.

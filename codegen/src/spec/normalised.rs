@@ -284,6 +284,7 @@ mod tests {
                 rotor_sensing: RotorSensing::TimedHalls { ticks: 37.5 },
                 minimum_speed: 4.0,
                 maximum_speed: 314.0,
+                bus_clamp: None,
                 over_speed: None,
                 stall_periods: 0,
                 hall_glitches: 0,

@@ -95,6 +95,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("bus_adc_range", &[D::Voltage], 1.0, 4000.0, "80 V"),
     quantity("bus_min", &[D::Voltage], 0.5, 2000.0, "36 V"),
     quantity("bus_max", &[D::Voltage], 1.0, 4000.0, "60 V"),
+    quantity("bus_clamp", &[D::Voltage], 1.0, 4000.0, "56 V"),
     quantity("over_voltage", &[D::Voltage], 0.0, 4000.0, "58 V"),
     quantity("under_voltage", &[D::Voltage], 0.0, 2000.0, "38 V"),
     quantity("braking_fade", &[D::Voltage], 0.0, 2000.0, "4 V"),

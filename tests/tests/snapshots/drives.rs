@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 27] = [
+const VARIANTS: [(&str, &str, Fields); 28] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -110,6 +110,11 @@ const VARIANTS: [(&str, &str, Fields); 27] = [
             "hall_angles",
             "[-26 deg, 30 deg, 90 deg, 150 deg, 214 deg, 270 deg]",
         )],
+    ),
+    (
+        "pdcc.field-weakening",
+        "pdcc:field_weakening=on",
+        &[("inverter", "bus_clamp", "56 V")],
     ),
     (
         "pdcc.over-speed",

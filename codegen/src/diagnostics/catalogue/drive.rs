@@ -176,6 +176,24 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
     )
 }
 
+/// A greatest speed beyond that at which field weakening holds the EMF within the bus. `speed`: where it was written,
+/// and the value; `last`: the speed that is held, rad/s.
+pub fn weakening_ends(
+    (at, speed): (&Location, &str),
+    [max_current, bus, last]: [f64; 3],
+) -> Diagnostic {
+    Diagnostic::new(
+        Code::WeakeningEnds,
+        at,
+        format!(
+            "`maximum_speed`: {speed}: with `field_weakening: on` a `max_current` of {} brings the voltage within the bus of {} up to {}; beyond, the torque ends, and soon the motor brakes whatever the set-point; lower `maximum_speed`, or raise `max_current`",
+            engineering(max_current, "A"),
+            engineering(bus, "V"),
+            rpm_at_most(last),
+        ),
+    )
+}
+
 /// What contradicts the EMF constant.
 #[derive(Clone, Debug)]
 pub struct Contradiction<'a> {

@@ -214,6 +214,30 @@ pub fn over_speed(speed: &Part, rated: &Part, period: &Part, range: [f64; 2]) ->
     )
 }
 
+/// With field weakening the greatest speed is one at which the EMF exceeds the bus. `emf`: between two
+/// terminals at that speed; `bus`: its name and voltage; `fastest`: speed at which the EMF is the bus voltage, rad/s.
+pub fn emf_above_bus(
+    speed: &Part,
+    emf: f64,
+    (bus, volts): (&Part, f64),
+    fastest: f64,
+) -> Diagnostic {
+    with_parts(
+        Diagnostic::new(
+            Code::EmfAboveBus,
+            &speed.location,
+            format!(
+                "`maximum_speed`: with `field_weakening: on` the EMF between two terminals at {} is {}, above the bus of {}; legs that a trip or `coast()` turns off there drive current into the bus; lower it to {}, or state the `bus_clamp` at which the board holds its bus",
+                speed.given,
+                engineering(emf, "V"),
+                engineering(volts, "V"),
+                rpm_at_most(fastest),
+            ),
+        ),
+        &[bus],
+    )
+}
+
 /// A ramp of the speed may reverse within the stall time-out, without a Hall edge.
 pub fn stall_timeout(timeout: &Part, acceleration: f64, reversal: f64) -> Diagnostic {
     Diagnostic::new(

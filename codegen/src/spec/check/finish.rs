@@ -58,6 +58,15 @@ pub(super) fn inverter(
             errors,
         );
         relations::check_over_speed(inverter, motor, errors);
+        let weakens = controller.is_some_and(|spec| spec.common().field_weakening);
+        relations::check_bus_clamp(
+            reader,
+            inverter,
+            motor,
+            (maximum, &maximum_part),
+            weakens,
+            errors,
+        );
         (minimum, maximum)
     });
     let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
@@ -90,6 +99,7 @@ pub(super) fn inverter(
         offset_tolerance: adc.offset_tolerance,
         trip_current,
         max_current,
+        bus_clamp: inverter.bus_clamp.as_ref().map(|given| given.si),
         bus_currents: currents::bus(inverter, trip_current, errors),
         rotor_sensing: capture?,
         minimum_speed,

@@ -28,6 +28,8 @@ pub(super) struct Inverter<'a> {
     pub trip_current: Option<Given<'a>>,
     pub max_current: Option<Given<'a>>,
     /// `bus_current_limit`, `return_current_limit`.
+    /// Voltage at which the board holds its bus.
+    pub bus_clamp: Option<Given<'a>>,
     pub bus_currents: [Option<Given<'a>>; 2],
     pub hall_timer_clock: Option<Given<'a>>,
     /// Whether `hall_timer_clock` was written, readable or not.
@@ -90,6 +92,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         sensing,
         trip_current: reader.plain_quantity(errors, "trip_current"),
         max_current: reader.plain_quantity(errors, "max_current"),
+        bus_clamp: reader.plain_quantity(errors, "bus_clamp"),
         bus_currents: ["bus_current_limit", "return_current_limit"]
             .map(|name| reader.plain_quantity(errors, name)),
         hall_timer_clock: reader.plain_quantity(errors, "hall_timer_clock"),

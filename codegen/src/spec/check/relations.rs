@@ -2,11 +2,11 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
-use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue::{self, Part};
-use crate::spec::RotorSensing;
+use crate::diagnostics::{Collector, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
+use crate::spec::{BusSource, RotorSensing};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.
@@ -166,6 +166,47 @@ pub(super) fn check_speeds(
         let is_timed = matches!(clocked, RotorSensing::TimedHalls { .. });
         let clock = is_timed.then_some(per_second * GREATEST_AGE / ticks);
         errors.push(catalogue::minimum_speed(minimum_part, ticks, least, clock));
+    }
+    Some(())
+}
+
+/// Accepted: a clamp above the bus; without one, field weakening up to the speed at which the EMF is the greatest
+/// bus voltage.
+pub(super) fn check_bus_clamp(
+    reader: &Reader,
+    inverter: &Inverter,
+    motor: &Motor,
+    (maximum, maximum_part): (f64, &Part),
+    weakens: bool,
+    errors: &mut Collector,
+) -> Option<()> {
+    let v_bus = inverter.v_bus.as_ref()?;
+    let (field, volts) = match inverter.bus? {
+        BusSource::Measured { max, .. } => ("bus_max", max),
+        BusSource::Fixed => ("bus_voltage", v_bus.si),
+    };
+    let part = reader.part(field, || engineering(volts, "V"));
+    if let Some(clamp) = &inverter.bus_clamp {
+        if clamp.si < volts * (1.0 - 1e-9) {
+            errors.push(catalogue::out_of_limits(
+                &clamp.part.location,
+                "bus_clamp",
+                &clamp.part.given,
+                &format!("{} (`{field}`)", engineering(at_least(volts), "V")),
+                "4 kV",
+            ));
+        }
+        return Some(());
+    }
+    let per_speed = motor.emf_constant? * motor.emf_shape?.line_to_line_peak();
+    let emf = per_speed * maximum;
+    if weakens && emf > volts * (1.0 + 1e-9) {
+        errors.push(catalogue::emf_above_bus(
+            maximum_part,
+            emf,
+            (&part, volts),
+            volts / per_speed,
+        ));
     }
     Some(())
 }

@@ -185,12 +185,6 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         |options| Some(number(options.residual_periods?)),
     ),
     Row::of(
-        rule::choice::<bool>("field_weakening", "on")
-            .preset("off")
-            .about("Torque above the speed at which the bus voltage ends: the current turns against the field; only with `reference: proportional` where pulse-width modulation drives all three legs; needs a `maximum_speed` whose EMF the bus bears, or a `bus_clamp`"),
-        |options| if_on(options.field_weakening),
-    ),
-    Row::of(
         rule::plain("advance", 0.0, 2.0, "1.5")
             .preset("0")
             .about("Phase advance, control periods; not with `reference: proportional` where no leg is turned off"),
@@ -245,6 +239,17 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         |_| None,
     ),
 ];
+
+/// Options of the controllers that limit a voltage.
+pub(crate) const LIMITED: &[Row<LoopOptions>] = &[Row::of(
+    rule::choice::<bool>(FIELD_WEAKENING, "on")
+        .preset("off")
+        .about("Torque above the speed at which the bus voltage ends: the current turns against the field, with up to `max_current` whatever the set-point; only with `reference: proportional`. Needs a `maximum_speed` whose EMF does not exceed the bus, or a `bus_clamp`"),
+    |options| if_on(options.field_weakening),
+)];
+
+/// Option of [`LIMITED`].
+pub(crate) const FIELD_WEAKENING: &str = "field_weakening";
 
 /// Options of the controllers that may turn a leg off.
 pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
@@ -428,7 +433,8 @@ pub(crate) fn read_common(
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
     let emf_in_use = traits.uses_emf.then_some(emf);
     let residual_periods = read_residual_timeout(reader, surroundings, emf_in_use, errors);
-    let field_weakening = read_field_weakening(reader, traits, reference, errors);
+    let field_weakening =
+        traits.pulses_three_legs && read_field_weakening(reader, reference, errors);
 
     if let Some(advance) = advanced
         && reference == Reference::Proportional
@@ -481,21 +487,14 @@ fn read_reference(
 }
 
 /// Field weakening turns a reference that follows the rotor's angle, by what a limit of the voltage tells.
-fn read_field_weakening(
-    reader: &Reader,
-    traits: Traits,
-    reference: Reference,
-    errors: &mut Collector,
-) -> bool {
-    const OPTION: &str = "field_weakening";
-    let is_on = reader.switch(errors, OPTION) == Some(true);
-    if is_on && !(traits.pulses_three_legs && reference == Reference::Proportional) {
+fn read_field_weakening(reader: &Reader, reference: Reference, errors: &mut Collector) -> bool {
+    let is_on = reader.switch(errors, FIELD_WEAKENING) == Some(true);
+    if is_on && reference == Reference::QuasiSquare {
         let quasi_square = ["reference", "quasi_square"];
-        let why = "only a `proportional` reference with all three legs pulsed in every period can turn against the field";
-        refuse(reader, OPTION, quasi_square, why, errors);
-        return false;
+        let why = "only a `proportional` reference can turn against the field";
+        refuse(reader, FIELD_WEAKENING, quasi_square, why, errors);
     }
-    is_on
+    is_on && reference == Reference::Proportional
 }
 
 /// An estimated EMF is late where the EMF turns fast, and so is the torque. A modelled one is not: it

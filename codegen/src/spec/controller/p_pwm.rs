@@ -38,7 +38,7 @@ impl Options for PPwmSpec {
     const TITLE: &'static str = "proportional control with pulse-width modulation";
     const NOTES: &'static str = "The smallest controller: EMF and proportional gain. Without an integral the current stays below its reference,\n\
          by the resistive drop over the gain.";
-    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP];
+    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP, common::LIMITED];
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")

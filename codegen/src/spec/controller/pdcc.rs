@@ -39,6 +39,8 @@ pub struct PdccSpec {
 impl Options for PdccSpec {
     const KIND: &'static str = "pdcc";
     const TITLE: &'static str = "predictive deadbeat current control";
+    const SHARED: &'static [&'static [Row<LoopOptions>]] =
+        &[common::LOOP, common::LIMITED, common::COMMUTATION];
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::choice::<Modulation>("modulation", "three_phase")
@@ -79,6 +81,17 @@ impl Options for PdccSpec {
             refuse_commutation(reader, ["modulation", "three_phase"], errors);
         }
         let why = "outside commutation one leg of the pair is low throughout and the third is off";
+        if !without_sectors && reader.switch(errors, common::FIELD_WEAKENING) == Some(true) {
+            let why =
+                "the pair carries a quasi-square current, which cannot turn against the field";
+            refuse(
+                reader,
+                common::FIELD_WEAKENING,
+                ["modulation", "pair"],
+                why,
+                errors,
+            );
+        }
         let pair = (!without_sectors).then_some((["modulation", "pair"], why));
         let common_mode = read_common_mode(reader, surroundings, pair, errors);
         let traits = Traits {

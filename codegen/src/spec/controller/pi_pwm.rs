@@ -58,7 +58,7 @@ impl PiPwmSpec {
 impl Options for PiPwmSpec {
     const KIND: &'static str = "pi-pwm";
     const TITLE: &'static str = "PI control with pulse-width modulation";
-    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP];
+    const SHARED: &'static [&'static [Row<LoopOptions>]] = &[common::LOOP, common::LIMITED];
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")
@@ -195,6 +195,11 @@ fn check_six_step(reader: &Reader, errors: &mut Collector) {
             "saturation",
             None,
             "a single line voltage is limited by the bus voltage alone",
+        ),
+        (
+            common::FIELD_WEAKENING,
+            Some("on"),
+            "the current through two windings is quasi-square",
         ),
         (
             "feed_forward",

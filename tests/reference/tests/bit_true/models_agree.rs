@@ -239,6 +239,9 @@ fn in_every_variant() {
     let mut variants = variants::all();
     variants.extend(variants::others());
     variants.extend(variants::limited());
+    let weakened = variants::weakened();
+    assert!(weakened.len() > 20, "{}", weakened.len());
+    variants.extend(weakened);
     let mut overall = Worst::default();
     for (seed, variant) in (0..).zip(&variants) {
         let worst = follow(variant, seed);

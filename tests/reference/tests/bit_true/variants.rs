@@ -274,6 +274,29 @@ pub fn limited() -> Vec<Variant> {
         .collect()
 }
 
+/// One in five of all variants whose reference can turn against the field, with field weakening.
+pub fn weakened() -> Vec<Variant> {
+    let variants = all().into_iter().chain(others());
+    let turnable = variants.filter(|variant| {
+        let is_limited = match &variant.spec.controller {
+            Controller::Pdcc(pdcc) => pdcc.modulation == Modulation::ThreePhase,
+            Controller::PiPwm(pi_pwm) => pi_pwm.six_step == Switch::Off,
+            Controller::PPwm(_) => true,
+            Controller::FcsMpc(_) | Controller::Phcc(_) => false,
+        };
+        is_limited && variant.spec.loop_options().reference == Reference::Proportional
+    });
+    turnable
+        .step_by(5)
+        .map(|variant| {
+            let share = "weakening_share = [19.5, 55.3]\ntorque_constant";
+            let toml = variant.toml.replacen("torque_constant", share, 1);
+            let toml = format!("{toml}field_weakening = \"on\"\n");
+            variant_of(format!("{} weakened", variant.name), toml)
+        })
+        .collect()
+}
+
 fn variant_of(name: String, toml: String) -> Variant {
     let spec = Spec::from_toml(&toml).expect("a valid specification");
     Variant {
@@ -357,6 +380,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_braking", shift(inverter.max_current * gain / 130.0)),
         ("k_motoring", shift(inverter.max_current * gain / 70.0)),
         ("j_in_force", f_v + 1),
+        ("k_weakening", 31),
         ("ratio", 24),
         ("scale", 30),
         ("shape", shift(peak)),
