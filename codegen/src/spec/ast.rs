@@ -111,6 +111,9 @@ pub struct Board {
     pub file: Option<BoardFile>,
 }
 
+/// Options of a controller that a board may state: they are those of its core.
+pub const OF_CORE: [&str; 2] = ["target", "core_clock"];
+
 /// What stands in a board's file.
 #[derive(Clone, Debug, Default)]
 pub struct BoardFile {
@@ -118,6 +121,8 @@ pub struct BoardFile {
     pub description: Option<String>,
     /// Its fields.
     pub inverter: Section,
+    /// Its core: [`OF_CORE`].
+    pub core: Section,
     /// Where the data come from: key and text.
     pub source: Vec<(String, String)>,
     /// What could not be read.

@@ -3,7 +3,7 @@
 //! A board is a layer of its own. Its fields stand directly under those of the place that names it:
 //! under a motor file's own where that names the board, over them where the call does.
 
-use super::ast::{Board, Field, Name, Section, SpecAst, Value};
+use super::ast::{Board, Field, Name, OF_CORE, Section, SpecAst, Value};
 use super::reader::Reader;
 use super::schema;
 use crate::diagnostics::catalogue::{self, Part};
@@ -42,6 +42,31 @@ impl SpecAst {
             ..Self::new(self.name.clone())
         };
         self.overlay(over);
+    }
+
+    /// Refuses controller options that are not those of a board's core.
+    pub(super) fn refuse_all_but_core(&mut self) {
+        let foreign = self.controller.fields.iter();
+        let foreign = foreign.filter(|field| !OF_CORE.contains(&field.name.as_str()));
+        let known = OF_CORE.map(|option| format!("controller.{option}"));
+        let known = known.each_ref().map(String::as_str);
+        let errors = foreign.map(|field| {
+            let name = format!("controller.{}", field.name);
+            catalogue::unknown_section(&field.name_location, &name, &known)
+        });
+        self.malformed.extend(errors.collect::<Vec<_>>());
+    }
+
+    /// The controller, with its board's core where it names none itself.
+    pub(super) fn whole_controller(&self) -> Section {
+        let mut whole = self.controller.clone();
+        let file = self.board.as_ref().and_then(|board| board.file.as_ref());
+        if OF_CORE.iter().all(|option| whole.field(option).is_none()) {
+            whole
+                .fields
+                .extend(file.into_iter().flat_map(|file| file.core.fields.clone()));
+        }
+        whole
     }
 
     /// The inverter with its board's fields under its own, and what is wrong between the two.

@@ -17,7 +17,7 @@ use std::path::Path;
 use toml_edit::{Document, Item, Key, TableLike};
 
 const SECTIONS: [&str; 5] = ["motor", "inverter", "controller", "assumed", "source"];
-const BOARD_SECTIONS: [&str; 4] = ["board", "inverter", "assumed", "source"];
+const BOARD_SECTIONS: [&str; 5] = ["board", "inverter", "controller", "assumed", "source"];
 
 /// Parses the text of a motor file; `file_name` is used in messages and, without folder and
 /// extension, as the default name of the drive.
@@ -126,6 +126,10 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
                 }
             }
             ("inverter", Some(table)) => file.read_fields(&mut ast.inverter, at, table),
+            ("controller", Some(table)) => {
+                file.read_fields(&mut ast.controller, at, table);
+                ast.refuse_all_but_core();
+            }
             ("assumed", Some(table)) => file.read_assumed(&mut ast, table, &["inverter"]),
             ("source", Some(table)) => file.read_source(&mut ast, table),
             (name, None) if BOARD_SECTIONS.contains(&name) => {
@@ -140,6 +144,7 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
     Ok(BoardFile {
         description,
         inverter: ast.inverter,
+        core: ast.controller,
         source: ast.source,
         malformed: ast.malformed,
     })

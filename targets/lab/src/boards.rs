@@ -70,13 +70,18 @@ pub fn board_with_motors(given: &str) -> Result<BoardWithMotors, LabError> {
         let mut sources = file.source.iter();
         Some(sources.find(|(key, _)| key == name)?.1.clone())
     };
-    let fields = file.inverter.fields.iter().map(|field| BoardField {
-        field: field.name.clone(),
-        value: field.value.to_string(),
-        source: (field.assumed.clone())
-            .map(|why| format!("assumed: {why}"))
-            .or_else(|| source_of(&field.name)),
-    });
+    let fields = file
+        .inverter
+        .fields
+        .iter()
+        .chain(&file.core.fields)
+        .map(|field| BoardField {
+            field: field.name.clone(),
+            value: field.value.to_string(),
+            source: (field.assumed.clone())
+                .map(|why| format!("assumed: {why}"))
+                .or_else(|| source_of(&field.name)),
+        });
     Ok(BoardWithMotors {
         name: given.to_owned(),
         description: file.description,

@@ -48,7 +48,8 @@ impl From<&StepTime> for Time {
     }
 }
 
-/// One line on the first chip: the core that is named, else the Cortex-M4. Estimates are told as about.
+/// One line on the first chip: the core that is named, else the Cortex-M4. Estimates are told as about, at worst with
+/// their error.
 pub fn sentence(times: &[StepTime]) -> String {
     let Some(time) = times.first() else {
         return "not known".to_owned();
@@ -59,12 +60,12 @@ pub fn sentence(times: &[StepTime]) -> String {
     } else {
         format!("assumed {}", time.chip.name)
     };
-    let (in_control, any) = (told.control_cycles, told.any_cycles);
+    let in_control = told.control_cycles;
     format!(
         "{} {in_control} cycles in control, {} % of a period; at worst {} %; Rust, {chip}",
         if time.is_bound() { "at most" } else { "about" },
         time.percent_of_period(in_control),
-        time.percent_of_period(any),
+        time.percent_of_period(time.most_cycles() as u32),
     )
 }
 

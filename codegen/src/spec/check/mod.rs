@@ -47,8 +47,9 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let inverter = inverter::read(&inverter_reader, &mut errors);
     let of_halls = ["hall_glitches", "minimum_speed"];
     angle::refuse_halls(&inverter_reader, &motor, &of_halls, &mut errors);
+    let whole_controller = ast.whole_controller();
     let (controller, capture) =
-        controller::read(&ast.controller, fallback, &motor, &inverter, &mut errors);
+        controller::read(&whole_controller, fallback, &motor, &inverter, &mut errors);
 
     let mut warnings = vec![];
     let contradicts =
@@ -61,7 +62,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     sensing_window::check(
         &inverter_reader,
         &inverter,
-        (controller.as_ref(), &ast.controller),
+        (controller.as_ref(), &whole_controller),
         &mut errors,
     );
     let finished = finish::inverter(
@@ -74,7 +75,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         &mut warnings,
     );
 
-    let origins = Origins::new(ast, &whole_inverter, warnings);
+    let origins = Origins::new(ast, &whole_inverter, &whole_controller, warnings);
     match (motor.finish(), finished, controller) {
         (Some(motor), Some(inverter), Some(controller)) => {
             let name = ast.name.text.clone();

@@ -25,8 +25,13 @@ pub struct Origin {
 }
 
 impl Origins {
-    /// Of a specification whose inverter has its board's fields.
-    pub(super) fn new(ast: &SpecAst, inverter: &Section, warnings: Vec<Diagnostic>) -> Self {
+    /// Of a specification whose inverter and controller have their board's fields.
+    pub(super) fn new(
+        ast: &SpecAst,
+        inverter: &Section,
+        controller: &Section,
+        warnings: Vec<Diagnostic>,
+    ) -> Self {
         let mut origins = Self {
             name: ast.name.location.clone(),
             sections: BTreeMap::new(),
@@ -35,7 +40,7 @@ impl Origins {
         };
         origins.take("motor", &ast.motor);
         origins.take("inverter", inverter);
-        origins.take("controller", &ast.controller);
+        origins.take("controller", controller);
         origins
     }
 

@@ -147,7 +147,7 @@ impl Draft {
         let mut board = Board::named(name.into())?;
         board.read(Path::new(""), folder)?;
         let fields = board.file.map(|file| {
-            let fields = file.inverter.fields.into_iter();
+            let fields = file.inverter.fields.into_iter().chain(file.core.fields);
             fields
                 .map(|field| (field.name, field.value.to_string()))
                 .collect()

@@ -30,6 +30,8 @@ pub struct Prepared {
     pub spec: Spec,
     /// Lowest bus voltage of the whole torque, volt, where the motor's file states a `bus_min` of its own.
     pub least_bus: Option<f64>,
+    /// Whether the drive has a speed loop, which was left out to set its torque.
+    pub regulates_speed: bool,
     /// The generated program.
     pub generated: Generated,
     /// The generator's warnings.
@@ -95,6 +97,7 @@ pub fn prepare_ast(
         least_bus: (ast.inverter.field("bus_min").is_some())
             .then(|| spec.inverter.lowest_driving_bus())
             .filter(|least| *least < spec.inverter.v_bus),
+        regulates_speed: false,
         spec,
         generated,
         warnings: warnings.iter().map(ToString::to_string).collect(),

@@ -7,7 +7,9 @@ use crate::closed_loop::RunOptions;
 use crate::plant::{Mechanics, PlantError, PlantParams};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::diagnostics::catalogue::unreadable_board_file;
-use hexagen_codegen::spec::{Board, EmfShape, SpecAst, motor_text, parse_board, parse_toml};
+use hexagen_codegen::spec::{
+    Board, EmfShape, SpecAst, apply_variant, motor_text, parse_board, parse_toml,
+};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -174,19 +176,28 @@ impl SelectedMotor {
         sections.any(|section| section.field("hall_timer_clock").is_some())
     }
 
-    /// Like [`Self::prepare`], for commands with a torque set-point.
+    /// Like [`Self::prepare`], for commands with a torque set-point: of a drive with a speed loop its current loop,
+    /// with the whole drive's warnings and the time of its step.
     ///
     /// # Errors
-    /// All diagnostics, or a drive with a speed loop.
+    /// All diagnostics.
     pub fn prepare_for_torque(&self, variant: Option<&str>) -> Result<Prepared, LabError> {
+        const OF_SPEED: [&str; 3] = ["speed_loop", "speed_bandwidth", "acceleration_limit"];
         let drive = self.prepare(variant)?;
-        if drive.spec.controller.common().speed.is_some() {
-            return Err(LabError::Argument(
-                "`speed_loop: on`: the drive has a speed set-point, this command sets the torque; use `speed_loop=off`"
-                    .to_owned(),
-            ));
+        if drive.spec.controller.common().speed.is_none() {
+            return Ok(drive);
         }
-        Ok(drive)
+        let mut inner = self.ast.clone();
+        if let Some(variant) = variant {
+            apply_variant(&mut inner, variant)?;
+        }
+        let is_kept = |name: &str| !OF_SPEED.contains(&name);
+        inner.controller.fields.retain(|field| is_kept(&field.name));
+        let mut current_loop = prepare_ast(inner, &self.source.name, None)?;
+        current_loop.generated.interface.times = drive.generated.interface.times;
+        current_loop.warnings = drive.warnings;
+        current_loop.regulates_speed = true;
+        Ok(current_loop)
     }
 }
 

@@ -91,8 +91,14 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
     let mut rates: Vec<String> = rates.collect();
     rates.dedup();
+    // What is judged is the torque.
+    let speed_loop = if drive.regulates_speed {
+        "; its speed loop is left out here"
+    } else {
+        ""
+    };
     format!(
-        "{}, {edges}; switches at {} kHz",
+        "{}, {edges}; switches at {} kHz{speed_loop}",
         drive.spec.controller.kind(),
         rates.join(", ")
     )
