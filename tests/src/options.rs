@@ -124,6 +124,14 @@ const SHARED: &[Row] = &[
                 "proportional",
                 &[("controller", "reference", "\"proportional\"")],
             ),
+            (
+                "weakened",
+                &[
+                    ("controller", "reference", "\"proportional\""),
+                    ("controller", "field_weakening", "\"on\""),
+                    ("inverter", "bus_clamp", "\"2 kV\""),
+                ],
+            ),
         ],
     ),
     (
@@ -158,19 +166,6 @@ const SHARED: &[Row] = &[
             ("0", &[("controller", "advance", "0")]),
             ("1.5", &[("controller", "advance", "1.5")]),
             ("2", &[("controller", "advance", "2")]),
-        ],
-    ),
-    (
-        "field_weakening",
-        &[
-            ("off", &[]),
-            (
-                "on",
-                &[
-                    ("controller", "field_weakening", "\"on\""),
-                    ("inverter", "bus_clamp", "\"2 kV\""),
-                ],
-            ),
         ],
     ),
     (

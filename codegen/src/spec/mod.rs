@@ -39,7 +39,7 @@ mod variant;
 mod words;
 
 pub use angle::{AngleDirection, AngleSensor, RotorSource};
-pub use ast::{Board, BoardFile, SpecAst};
+pub use ast::{Board, BoardFile, Field, OF_CORE, SpecAst};
 pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
 pub use controller::{

@@ -6,12 +6,14 @@
 //!
 //! The rule takes what must not fail first, then what costs: no trip, torque, ripple, both again with
 //! deviations of motor and bus, the speed up to which the torque is held, and of those that are alike the
-//! one with the fewest operations in a step.
+//! one whose longest step takes the fewest cycles.
 
 use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use crate::robustness::measured;
 use crate::{LabError, Progress};
+use hexagen_codegen::spec::{Field, OF_CORE, apply_variant};
+use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -101,8 +103,10 @@ pub struct Tried {
     pub nominal: Vec<Point>,
     /// Runs with each deviation.
     pub deviating: Vec<Point>,
-    /// Operations on the longest path of a step's law.
-    pub operations: Option<u32>,
+    /// Cycles of the longest step on the core that is named or assumed, an estimate with its error.
+    pub cycles: Option<u32>,
+    /// Whether that is more than the control period has, on a core that is named.
+    pub overruns: bool,
     /// Speed up to which it holds its torque, percent of the rated one; of those alone that are alike else.
     pub limit_pct: Option<f64>,
     /// Why it is not the recommended one.
@@ -116,7 +120,8 @@ impl Tried {
             refused: None,
             nominal: Vec::new(),
             deviating: Vec::new(),
-            operations: None,
+            cycles: None,
+            overruns: false,
             limit_pct: None,
             why_not: None,
         }
@@ -134,6 +139,8 @@ pub struct Advice {
     pub recommended: Option<usize>,
     /// Why that one.
     pub reason: String,
+    /// Options of the motor's file that stay whatever the controller, with their values.
+    pub kept: Vec<(String, String)>,
 }
 
 /// Torque and ripple of the worst run of several.
@@ -185,6 +192,9 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         tried: try_all(&prepared, progress)?,
         recommended: None,
         reason: String::new(),
+        kept: kept(motor)
+            .map(|field| (field.name.clone(), field.value.to_string()))
+            .collect(),
     };
     let mut left = advice.alike();
     let limits = left.par_iter().map(|&k| {
@@ -210,6 +220,20 @@ pub fn regret(motor: &SelectedMotor) -> Result<Option<Regret>, LabError> {
 /// A variant, taken through the generator.
 type Drive = (&'static str, Result<Prepared, LabError>);
 
+/// Options that say nothing of a controller's merits: those of the core, and what sets the current.
+const KEPT: [&str; 4] = [
+    "speed_loop",
+    "speed_bandwidth",
+    "acceleration_limit",
+    "slew_rate",
+];
+
+/// Fields of a motor's file that stay whatever the controller.
+fn kept(motor: &SelectedMotor) -> impl Iterator<Item = &Field> {
+    let fields = motor.ast.controller.fields.iter();
+    fields.filter(|field| OF_CORE.iter().chain(&KEPT).any(|name| field.name == *name))
+}
+
 /// All variants of a motor.
 ///
 /// # Errors
@@ -217,7 +241,17 @@ type Drive = (&'static str, Result<Prepared, LabError>);
 fn prepare(motor: &SelectedMotor) -> Result<Vec<Drive>, LabError> {
     let mut plain = motor.clone();
     plain.ast.controller.fields.clear();
-    let drives = VARIANTS.map(|variant| (variant, plain.prepare_for_torque(Some(variant))));
+    let drives = VARIANTS.map(|variant| {
+        let mut drive = plain.clone();
+        // A controller of another kind would replace these, too.
+        let applied = apply_variant(&mut drive.ast, variant);
+        drive.ast.controller.fields.extend(kept(motor).cloned());
+        let prepared = match applied {
+            Ok(()) => drive.prepare_for_torque(None),
+            Err(errors) => Err(errors.into()),
+        };
+        (variant, prepared)
+    });
     let mut drives = Vec::from(drives);
     let controller = &motor.ast.controller;
     if controller.fields.iter().any(|field| field.name != "kind") {
@@ -259,8 +293,10 @@ fn limit_of(drive: &Prepared) -> Result<Option<f64>, LabError> {
 }
 
 fn try_drive(variant: &'static str, drive: &Prepared) -> Result<Tried, LabError> {
+    let time = drive.generated.interface.times.first();
     let mut tried = Tried {
-        operations: Some(drive.operations()),
+        cycles: time.map(|time| time.most_cycles() as u32),
+        overruns: time.is_some_and(StepTime::is_too_long),
         ..Tried::new(variant)
     };
     for speed in SPEEDS {
@@ -320,7 +356,10 @@ impl Advice {
         let many = self.tried.len();
         let mut left: Vec<usize> = (0..many).collect();
         self.keep(&mut left, &works);
-        self.reason = format!("{} of {many} variants never trip", left.len());
+        self.reason = format!(
+            "{} of {many} variants run without a trip and within the period",
+            left.len()
+        );
         let rules: [(&str, Runs); 2] = [
             ("on the stated motor", |tried| &tried.nominal),
             ("with deviations", |tried| &tried.deviating),
@@ -342,15 +381,15 @@ impl Advice {
             });
             let _ = write!(
                 self.reason,
-                "; {} of them hold {most:.1} % of the torque with {least:.1} % of ripple {when}, within {TORQUE_ALIKE} and {RIPPLE_ALIKE} points",
+                "; {when} {} of them are within {TORQUE_ALIKE} point of the most torque, {most:.1} %, and {RIPPLE_ALIKE} points of the least ripple, {least:.1} %",
                 left.len(),
             );
         }
         left
     }
 
-    /// Recommends one of those that are alike, by the speed up to which they hold the torque and by their
-    /// operations.
+    /// Recommends one of those that are alike, by the speed up to which they hold the torque and by the time of
+    /// their longest step.
     fn recommend(&mut self, left: &mut Vec<usize>) {
         let limit = |tried: &Tried| tried.limit_pct.unwrap_or(0.0);
         let farthest = self.most(left, &limit);
@@ -365,14 +404,15 @@ impl Advice {
                 )
             })
         });
-        let operations = |tried: &Tried| tried.operations.unwrap_or(u32::MAX);
-        let fewest = left.iter().min_by_key(|&&k| operations(&self.tried[k]));
+        let cycles = |tried: &Tried| tried.cycles.unwrap_or(u32::MAX);
+        let fewest = left.iter().min_by_key(|&&k| cycles(&self.tried[k]));
         self.recommended = fewest.copied();
         let Some(recommended) = self.recommended else {
-            "no variant runs without a trip".clone_into(&mut self.reason);
+            "no variant runs without a trip and within the control period"
+                .clone_into(&mut self.reason);
             return;
         };
-        let count = operations(&self.tried[recommended]);
+        let count = cycles(&self.tried[recommended]);
         if has_limit {
             let _ = write!(
                 self.reason,
@@ -382,11 +422,11 @@ impl Advice {
         }
         let _ = write!(
             self.reason,
-            "; of these it takes the fewest operations, {count}"
+            "; of these its longest step takes the fewest cycles, at most {count}"
         );
         left.retain(|&k| k != recommended);
         self.keep(left, &|_| {
-            Some("as good, but takes more operations".to_owned())
+            Some("as good, but a step takes no fewer cycles".to_owned())
         });
     }
 
@@ -424,12 +464,15 @@ impl Regret {
     }
 }
 
-/// What is against a variant that is refused or trips.
+/// What is against a variant that is refused, trips or takes longer than the period.
 fn works(tried: &Tried) -> Option<String> {
     if let Some(reason) = &tried.refused {
         let line = reason.lines().next().unwrap_or_default();
         let start = line.find("error[").unwrap_or(0);
         return Some(format!("refused: {}", &line[start..]));
+    }
+    if tried.overruns {
+        return Some("a step may take longer than the control period".to_owned());
     }
     let mut points = tried.nominal.iter().chain(&tried.deviating);
     let fails = points.find(|point| point.torque_pct.is_none() || point.ripple_pct.is_none())?;
@@ -459,13 +502,13 @@ mod tests {
         Tried {
             nominal: vec![point(figures)],
             deviating: vec![point(deviating)],
-            operations: Some(cost),
+            cycles: Some(cost),
             ..Tried::new(variant)
         }
     }
 
     #[test]
-    fn trips_torque_ripple_and_deviations_count_before_operations() {
+    fn trips_torque_ripple_and_deviations_count_before_cycles() {
         let mut advice = Advice {
             motor: String::new(),
             tried: vec![
@@ -478,13 +521,14 @@ mod tests {
             ],
             recommended: None,
             reason: String::new(),
+            kept: Vec::new(),
         };
         let mut left = advice.alike();
         assert_eq!(left, [0, 5], "{advice:#?}");
         advice.recommend(&mut left);
         assert_eq!(advice.recommended, Some(5), "{advice:#?}");
         let against = [
-            "more operations",
+            "fewer cycles",
             "trips",
             "97.0 %",
             "9.0 %",

@@ -6,6 +6,7 @@ use crate::commands::{
     new, prove, replay, report, reproduce, simulate, verify,
 };
 use clap::{Args, Parser, Subcommand};
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{EmfShape, KINDS, option_help};
 use hexagen_lab::LabError;
 use hexagen_lab::engine::{Model, PerSensor, PlantOptions, Prepared, SelectedMotor, SetPoint};
@@ -302,7 +303,8 @@ impl PlantArguments {
         let (current, max) = (set_point.current, drive.spec.inverter.max_current);
         if current.abs() > max * (1.0 + 1e-9) {
             warn(&format!(
-                "{torque} Nm need {current:.2} A; the drive limits its set-point to max_current = {max} A"
+                "{torque} Nm need {current:.2} A; the drive limits its set-point to its max_current of {}",
+                engineering(max, "A"),
             ));
         }
         set_point

@@ -37,7 +37,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     print_text(&format!(
         "Rated torque at {speeds} % of rated speed, the worst of them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3,\n\
          k_b x 1.1 and the bus 15 % low, each alone. Copper loss and switching at rated speed.\n\
-         Holds to: speed up to which those that are alike else hold the torque. Operations: longest path of a step's law."
+         Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core that is named or assumed."
     ))?;
     print_text(&verdict(&advice))
 }
@@ -58,6 +58,12 @@ fn verdict(advice: &Advice) -> String {
     let lines: Vec<String> = [("kind", kind)]
         .into_iter()
         .chain(options)
+        .chain(
+            advice
+                .kept
+                .iter()
+                .map(|(name, value)| (name.as_str(), value.as_str())),
+        )
         .map(|(name, value)| match value.parse::<f64>() {
             Ok(_) => format!("  {name} = {value}"),
             Err(_) => format!("  {name} = \"{value}\""),
@@ -78,7 +84,7 @@ fn table(advice: &Advice) -> Table {
         "copper W",
         "switching kHz",
         "holds to %",
-        "operations",
+        "longest step, cycles",
     ];
     let numbers = numbers.map(|name| Column::number(name, ""));
     let columns = [Column::text("controller")].into_iter().chain(numbers);
@@ -121,7 +127,7 @@ fn figures(tried: &Tried) -> [String; 8] {
         ),
         shown(tried.limit_pct),
         tried
-            .operations
+            .cycles
             .map_or("-".to_owned(), |count| count.to_string()),
     ]
 }

@@ -3,6 +3,7 @@
 use super::ran::Ran;
 use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_warnings};
 use clap::Args;
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
 use hexagen_lab::engine::{Prepared, SelectedMotor};
 use hexagen_lab::envelope::{SpeedBounds, envelope_on};
@@ -124,8 +125,8 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     let bounds = outcome.bounds.map_or_else(String::new, |bounds| {
         if bounds.envelope_rpm > 0.0 {
             format!(
-                "\nThe bus drives the whole current up to {:.0} rpm; no profile within its peak gives the torque beyond {:.0} rpm.",
-                bounds.envelope_rpm, bounds.any_profile_rpm
+                "\nHeld: 97 % of it in the mean. The bus drives the whole current up to {} rpm; no profile within its peak gives the torque beyond {} rpm.",
+                bounds.envelope_rpm.floor(), bounds.any_profile_rpm.floor()
             )
         } else {
             "\nThe torque is beyond the drive at every speed.".to_owned()
@@ -147,8 +148,8 @@ fn found(limit: &SpeedLimit, torque: f64, drive: &Prepared) -> String {
             let reach = drive.reach();
             let limited = if reach < torque.abs() {
                 format!(
-                    "; max_current = {} A limits the set-point to {} Nm",
-                    drive.spec.inverter.max_current,
+                    "; a max_current of {} limits the set-point to {} Nm",
+                    engineering(drive.spec.inverter.max_current, "A"),
                     significant(reach, 3)
                 )
             } else {

@@ -54,6 +54,9 @@ struct Made {
 pub fn run(options: &Options) -> Result<(), Failure> {
     refuse_present(&options.file, options.force)?;
     let mut draft = Draft::of(given(&options.values)?, &options.file)?;
+    if !options.json && !std::io::stdin().is_terminal() {
+        note("nothing is asked without a terminal; give values as FIELD=VALUE arguments");
+    }
     if !options.json && std::io::stdin().is_terminal() {
         // Before questions are asked in vain.
         checked(&draft.text(), &options.file, false)?;

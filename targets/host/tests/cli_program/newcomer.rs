@@ -129,7 +129,7 @@ fn the_best_controller_of_a_motor_is_recommended_with_the_reason() {
         "recommended",
         "with deviations",
         "Why: 16 of 16",
-        "fewest operations",
+        "fewest cycles",
     ] {
         assert!(said.stdout.contains(text), "{text}: {said:?}");
     }

@@ -11,7 +11,6 @@ use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
-use hexagen_codegen::ir::PathCost;
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{
     BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
@@ -287,12 +286,6 @@ impl Prepared {
             ..plant_of(&self.spec)
         };
         measure(&plant, &run, self.maker(Model::Fixed, set_point))
-    }
-
-    /// Operations on the longest path of a step's law.
-    pub fn operations(&self) -> u32 {
-        let step = &self.generated.graph.program().step;
-        PathCost::of_function(step).worst.total()
     }
 
     /// Rated speed in rpm.

@@ -293,7 +293,7 @@ fn plan(
 
 /// What a board without an edge timer has not.
 const NO_TIMER: &str = "Every row sees Hall edges at samples alone, half a period late on the mean: the motor file has no \
-     `hall_timer_clock`. With a timer that captures the edges (`hall_timer_clock = \"1 MHz\"`) \
+     `hall_timer_clock`. With a timer that captures the edges (`hall_timer_clock`) \
      angles are finer, and the ripple at speed is less.";
 
 /// A diagnostic without its variant and column.

@@ -131,10 +131,10 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         String::new()
     };
     format!(
-        "rated speed takes {}, the inverter makes {reach}{}; whole current to {:.0} rpm",
+        "rated speed takes {}, the inverter makes {reach}{}; whole current to {} rpm",
         engineering(judgement.rating_v, "V"),
         engineering(v_bus, "V"),
-        judgement.envelope_rpm,
+        judgement.envelope_rpm.floor(),
     )
 }
 
@@ -161,7 +161,10 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
             engineering(judgement.greatest_torque_nm, "Nm"),
             judgement
                 .greatest_torque_rpm
-                .map_or("at no speed".to_owned(), |rpm| format!("to {rpm:.0} rpm")),
+                .map_or("at no speed".to_owned(), |rpm| format!(
+                    "to {} rpm",
+                    rpm.floor()
+                )),
         )
     } else {
         String::new()

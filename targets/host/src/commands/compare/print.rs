@@ -95,16 +95,16 @@ fn of_word(rows: &[Row], word: u32) -> String {
     let Some((controller, figure, rpm)) = furthest else {
         return format!("With words of {word} bits {step}{trips}.");
     };
-    let verdict = if figure.of_allowance <= SUFFICIENT {
-        format!("Words of {word} bits suffice")
-    } else {
-        format!("Words of {word} bits make a difference")
-    };
-    format!(
-        "{verdict}: {step}, and in closed loop the figure that changes most, {}, changes by {} ({controller} at {rpm:.0} rpm){trips}.",
+    let most = format!(
+        "in closed loop the figure that changes most, {}, changes by {} ({controller} at {rpm:.0} rpm)",
         figure.figure,
         figure.text(),
-    )
+    );
+    if figure.of_allowance <= SUFFICIENT {
+        format!("Words of {word} bits suffice: {step}, and {most}{trips}.")
+    } else {
+        format!("Words of {word} bits show: {most}, although {step}{trips}.")
+    }
 }
 
 /// A table with the figures of each that generates.

@@ -80,7 +80,7 @@ const MOTOR: &[Line] = &[
          # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
         "17.3 V/krpm line_to_line peak",
     ),
-    needed(&["emf_shape"], "trapezoidal or sinusoidal; or harmonics, or samples of a trace between two terminals.", "trapezoidal"),
+    needed(&["emf_shape"], "sinusoidal (most hub, servo and outrunner motors) or trapezoidal; or harmonics, or samples of a trace between\n# two terminals.", "sinusoidal"),
     needed(
         &["emf_orders"],
         "Orders of the phase EMF's harmonics, odd, 3 to 23.",
@@ -118,7 +118,7 @@ const MOTOR: &[Line] = &[
     )
     .optional(),
     needed(&["nominal_voltage"], "Voltage of the no-load speed.", "48 V").optional(),
-    needed(&["inertia"], "Of the rotor; needed for speed control.", "24 g cm2").optional(),
+    needed(&["inertia"], "Of the rotor and what it moves; needed for speed control.", "24 g cm2").optional(),
     needed(
         &["rotor"],
         "An encoder or a resolver in place of Hall sensors; then also angle_offset, angle_direction and angle_bits.",
@@ -203,11 +203,11 @@ const INVERTER: &[Line] = &[
         "fixed",
     )
     .optional(),
-    needed(&["max_current"], "Largest set-point; rated_current by default.", "25 A").optional(),
+    needed(&["max_current"], "Largest set-point. By default rated_current; with a sinusoidal EMF up to 15 % more where rated_torque needs it.", "25 A").optional(),
     needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
     needed(
         &["hall_timer_clock"],
-        "Clock of a timer that captures Hall edges, if the board has one.",
+        "Clock of a timer that captures Hall edges, if the board has one; a slow motor needs a slower clock (HX0310).",
         "1 MHz",
     )
     .optional(),
