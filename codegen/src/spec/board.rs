@@ -48,12 +48,8 @@ impl SpecAst {
     pub(super) fn refuse_all_but_core(&mut self) {
         let foreign = self.controller.fields.iter();
         let foreign = foreign.filter(|field| !OF_CORE.contains(&field.name.as_str()));
-        let known = OF_CORE.map(|option| format!("controller.{option}"));
-        let known = known.each_ref().map(String::as_str);
-        let errors = foreign.map(|field| {
-            let name = format!("controller.{}", field.name);
-            catalogue::unknown_section(&field.name_location, &name, &known)
-        });
+        let errors = foreign
+            .map(|field| catalogue::option_of_board(&field.name_location, &field.name, &OF_CORE));
         self.malformed.extend(errors.collect::<Vec<_>>());
     }
 

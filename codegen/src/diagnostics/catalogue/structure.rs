@@ -21,6 +21,18 @@ pub fn unknown_section(at: &Location, name: &str, known: &[&str]) -> Diagnostic 
     )
 }
 
+/// An option of a board's file that is not its core's.
+pub fn option_of_board(at: &Location, name: &str, of_core: &[&str]) -> Diagnostic {
+    Diagnostic::new(
+        Code::MisplacedField,
+        at,
+        format!(
+            "a board's `controller` has no field `{name}`, only {}; move it to a motor's",
+            list(of_core, "and")
+        ),
+    )
+}
+
 /// A board's file in place of a motor's.
 pub fn board_for_motor(at: &Location) -> Diagnostic {
     Diagnostic::new(

@@ -81,17 +81,6 @@ impl Options for PdccSpec {
             refuse_commutation(reader, ["modulation", "three_phase"], errors);
         }
         let why = "outside commutation one leg of the pair is low throughout and the third is off";
-        if !without_sectors && reader.switch(errors, common::FIELD_WEAKENING) == Some(true) {
-            let why =
-                "the pair carries a quasi-square current, which cannot turn against the field";
-            refuse(
-                reader,
-                common::FIELD_WEAKENING,
-                ["modulation", "pair"],
-                why,
-                errors,
-            );
-        }
         let pair = (!without_sectors).then_some((["modulation", "pair"], why));
         let common_mode = read_common_mode(reader, surroundings, pair, errors);
         let traits = Traits {
@@ -105,6 +94,18 @@ impl Options for PdccSpec {
         if common.emf == EmfSource::Held && modulation == Modulation::Pair {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);
+        }
+        let weakens = reader.switch(errors, common::FIELD_WEAKENING) == Some(true);
+        if weakens && modulation == Modulation::Pair && common.reference == Reference::QuasiSquare {
+            let why =
+                "the pair carries a quasi-square current, which cannot turn against the field";
+            refuse(
+                reader,
+                common::FIELD_WEAKENING,
+                ["modulation", "pair"],
+                why,
+                errors,
+            );
         }
         if common.reference == Reference::Proportional
             && modulation == Modulation::Pair

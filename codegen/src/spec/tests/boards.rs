@@ -322,3 +322,34 @@ fn every_board_reads_and_says_where_its_numbers_are_from() {
         }
     }
 }
+
+#[test]
+fn a_board_names_its_core_where_the_drive_names_none() {
+    let core = "[controller]\ntarget = \"cortex_m0\"\ncore_clock = \"24 MHz\"\n";
+    let folder = Folder::new("core", MOTOR, &format!("{BOARD}{core}"));
+    let core_of = |controller: &str| {
+        let call = format!(
+            "Rear {{ motor: \"motors/hub.toml\", board: \"boards/mine.toml\", controller: {controller} }}"
+        );
+        let (checked, _) = folder.check(&call);
+        let (spec, _) = checked.expect("is right");
+        let options = *spec.controller.common();
+        (options.core.name(), options.core.clock, options.word)
+    };
+    assert_eq!(core_of("pdcc"), (Some("cortex_m0"), Some(24e6), 16));
+    assert_eq!(core_of("phcc"), (Some("cortex_m0"), Some(24e6), 16));
+    // A core of the drive has the clock of the drive, not that of another core.
+    let own = core_of("pdcc { target: cortex_m4 }");
+    assert_eq!(own, (Some("cortex_m4"), None, 32));
+}
+
+#[test]
+fn a_board_chooses_no_controller() {
+    let text = format!("{BOARD}[controller]\nkind = \"phcc\"\n");
+    let board = parse_board(&text, "boards/mine.toml").expect("is TOML");
+    let told: Vec<String> = board.malformed.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        ["boards/mine.toml:15:1: error[HX0107]: a board's `controller` has no field `kind`, only `target` and `core_clock`; move it to a motor's"]
+    );
+}
