@@ -92,7 +92,7 @@ impl<'b> FieldWeakening<'b> {
         }
         let turned = shape.at(l, "weak", theta_weak);
         named! {
-            let share = self.share(l, angle);
+            let share = share_at(l, angle);
             let j_along = share.mul_floor(top, SHARE_BITS);
             let surplus = (j_along - set_point.abs()).max(0);
         }
@@ -122,29 +122,6 @@ impl<'b> FieldWeakening<'b> {
         };
         (Phases([a, b]), weakened)
     }
-
-    /// Share of the torque that a current turned by the angle makes.
-    fn share(self, l: &Lowering<'b>, angle: Expr<'b>) -> Expr<'b> {
-        let [square, fourth] = share_of_torque(l.spec.motor.emf_shape);
-        let doc = "Torque lost per squared turn: share = 1 - a^2 (c2 - c4 a^2), a in turns.";
-        let exact = square * f64::from(SLOPE_BITS).exp2();
-        let raw = round_half_up(exact) as i64;
-        let slope = l.rounded_number("weakening_c2", raw, Exact::Number(Real::of(exact)), doc);
-        let k_fourth = l.coefficient(
-            "k_weakening",
-            fourth * (f64::from(SLOPE_BITS) - f64::from(ANGLE_BITS)).exp2(),
-            32,
-            "c4 2^-6, for the slope of the share of the torque.",
-            &format!("c4 = {fourth:.4}"),
-        );
-        let doc = "All of the torque, 30 fraction bits.";
-        let one = l.number("weakening_one", 1 << SHARE_BITS, doc);
-        named! {
-            let angle_square = angle.mul_floor(angle, ANGLE_BITS);
-            let slope = slope - k_fourth * angle_square;
-        }
-        one - angle_square.mul_floor(slope, ANGLE_BITS + SLOPE_BITS - SHARE_BITS)
-    }
 }
 
 impl<'b> Weakened<'b> {
@@ -161,4 +138,27 @@ impl<'b> Weakened<'b> {
         }
         (self.angle, weakening_new)
     }
+}
+
+/// Share of the torque that a current turned by the angle makes.
+fn share_at<'b>(l: &Lowering<'b>, angle: Expr<'b>) -> Expr<'b> {
+    let [square, fourth] = share_of_torque(l.spec.motor.emf_shape);
+    let doc = "Torque lost per squared turn: share = 1 - a^2 (c2 - c4 a^2), a in turns.";
+    let exact = square * f64::from(SLOPE_BITS).exp2();
+    let raw = round_half_up(exact) as i64;
+    let slope = l.rounded_number("weakening_c2", raw, Exact::Number(Real::of(exact)), doc);
+    let k_fourth = l.coefficient(
+        "k_weakening",
+        fourth * (f64::from(SLOPE_BITS) - f64::from(ANGLE_BITS)).exp2(),
+        32,
+        "c4 2^-6, for the slope of the share of the torque.",
+        &format!("c4 = {fourth:.4}"),
+    );
+    let doc = "All of the torque, 30 fraction bits.";
+    let one = l.number("weakening_one", 1 << SHARE_BITS, doc);
+    named! {
+        let angle_square = angle.mul_floor(angle, ANGLE_BITS);
+        let slope = slope - k_fourth * angle_square;
+    }
+    one - angle_square.mul_floor(slope, ANGLE_BITS + SLOPE_BITS - SHARE_BITS)
 }

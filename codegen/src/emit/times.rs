@@ -30,7 +30,7 @@ pub(super) fn list<'a>(times: impl Iterator<Item = &'a StepTime>) -> Vec<String>
     };
     let compiler = first.chip.compiler;
     let mut lines = vec![format!(
-        "Time of a step in Rust ({compiler}, `opt-level = 3`, `lto = \"fat\"`, without the feature `signals`), cycles with every wait state of the chip's memory and without credit for prefetch and caches. Any step includes start-up, trips, braking of a fast rotor and bridged Hall codes.{estimated}"
+        "Time of a step in Rust ({compiler}, `opt-level = 3`, `lto = \"fat\"`, without the feature `signals`), cycles with every wait state of the chip's memory and without credit for prefetch and caches, and their share of a control period. Any step includes start-up, trips, braking of a fast rotor and bridged Hall codes.{estimated}"
     )];
     lines.extend(times.into_iter().flat_map(item));
     lines
@@ -66,13 +66,13 @@ fn item(time: &StepTime) -> [String; 4] {
         format!("- {at}:"),
         format!("  - in most steps {} instructions{normal};", told.normal),
         format!(
-            "  - in control {most}{} instructions{control} and {} cycles{control_cycles}, {} % of the period;",
+            "  - in control {most}{} instructions{control}, {} cycles{control_cycles}, {} %;",
             told.control,
             told.control_cycles,
             time.percent_of_period(told.control_cycles),
         ),
         format!(
-            "  - in any step {most}{} instructions{any} and {} cycles{any_cycles}, {} % of it.",
+            "  - in any step {most}{} instructions{any}, {} cycles{any_cycles}, {} %.",
             told.any,
             told.any_cycles,
             time.percent_of_period(told.any_cycles),

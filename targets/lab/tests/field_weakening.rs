@@ -4,6 +4,7 @@ use hexagen_lab::closed_loop::{RunOptions, mean_torque};
 use hexagen_lab::engine::{Model, MotorSource, Prepared, plant_of, prepare, run_of};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 
 /// A motor of the library on a bus that takes current, to twice its rated speed.
 fn drive(name: &str, max_current: Option<&str>, options: &str) -> Prepared {
@@ -13,7 +14,7 @@ fn drive(name: &str, max_current: Option<&str>, options: &str) -> Prepared {
         let lines = source.text.lines();
         let others = lines.filter(|line| !line.starts_with("max_current"));
         source.text = others.collect::<Vec<_>>().join("\n");
-        fields.push_str(&format!("max_current = \"{most}\"\n"));
+        let _ = writeln!(fields, "max_current = \"{most}\"");
     }
     source.text = source.text.replacen("[inverter]\n", &fields, 1);
     prepare(&source, Some(options)).unwrap_or_else(|why| panic!("{name} {options}: {why}"))

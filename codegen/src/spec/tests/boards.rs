@@ -350,6 +350,8 @@ fn a_board_chooses_no_controller() {
     let told: Vec<String> = board.malformed.iter().map(ToString::to_string).collect();
     assert_eq!(
         told,
-        ["boards/mine.toml:15:1: error[HX0107]: a board's `controller` has no field `kind`, only `target` and `core_clock`; move it to a motor's"]
+        [
+            "boards/mine.toml:15:1: error[HX0107]: a board's `controller` has no field `kind`, only `target` and `core_clock`; move it to a motor's"
+        ]
     );
 }

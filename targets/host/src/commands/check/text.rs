@@ -93,7 +93,7 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     rates.dedup();
     // What is judged is the torque.
     let speed_loop = if drive.regulates_speed {
-        "; its speed loop is left out here"
+        "; speed loop left out"
     } else {
         ""
     };
