@@ -12,8 +12,8 @@
 use super::emf::{ProportionalShape, lifted};
 use super::set_point::SetPointWords;
 use super::{Lowering, round_half_up};
-use crate::design::weakening::{MOST_TURN, share_of_torque};
 use crate::ir::{Exact, Expr, Flag, Interval, Memory, Phases, Real, named};
+use crate::spec::{MOST_TURN, share_of_torque};
 
 /// Periods in which the angle rises from none to its greatest while current is left.
 const RISE: f64 = 128.0;

@@ -1,51 +1,13 @@
-//! Field weakening: the torque that a proportional current turned by an angle still makes.
+//! Field weakening: up to which speed it holds the EMF within the bus.
 
-use super::emf::{phases, proportional_current};
+use super::emf::proportional_current;
 use super::envelope::Envelope;
-use crate::spec::EmfShape;
-use nalgebra::{Complex, Matrix2, Vector2};
+use crate::spec::MOST_TURN;
+use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Greatest angle by which a reference is turned, electrical turns: 75 degrees. A quarter of the torque is
-/// left there; beyond, more current would only be lost.
-pub const MOST_TURN: f64 = 75.0 / 360.0;
-
-/// Rotor angles and angles of the reference over which the share is fitted.
+/// Angles of a turn over which a fundamental is summed.
 const ANGLES: u32 = 120;
-const TURNS: u32 = 30;
-
-/// c2 and c4 of the share of the torque, 1 - a^2 (c2 - c4 a^2), with a the angle in turns: by least squares over
-/// 0 to [`MOST_TURN`], a third of a percent off at most. Of a shape that is skewed, the mean of both directions.
-pub fn share_of_torque(shape: EmfShape) -> [f64; 2] {
-    let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-    for step in 1..=TURNS {
-        let turn = MOST_TURN * f64::from(step) / f64::from(TURNS);
-        let square = turn * turn;
-        let row = Vector2::new(square, -square * square);
-        normal += row * row.transpose();
-        right += row * (1.0 - exact_share(shape, turn));
-    }
-    let fitted = normal.lu().solve(&right).unwrap_or_default();
-    // Numbers of a specification, which rounding makes the same on every machine.
-    [fitted.x, fitted.y].map(|value| (value * 1e6).round() / 1e6)
-}
-
-/// Mean torque of the current turned by `turn` turns over that of the current itself.
-fn exact_share(shape: EmfShape, turn: f64) -> f64 {
-    let torque = |turn: f64| {
-        let at = |angle: u32| {
-            let theta = TAU * f64::from(angle) / f64::from(ANGLES);
-            let currents = phases(
-                |theta| proportional_current(shape, 1.0, theta),
-                theta + TAU * turn,
-            );
-            let emf = phases(|theta| shape.zero_sum(theta)[0], theta);
-            currents.iter().zip(emf).map(|(i, e)| i * e).sum::<f64>()
-        };
-        (0..ANGLES).map(at).sum::<f64>()
-    };
-    0.5 * (torque(turn) + torque(-turn)) / torque(0.0)
-}
 
 /// The last speed, mechanical rad/s, at which the greatest current turned by [`MOST_TURN`] needs no more than six
 /// steps of the bus make, if that is below `maximum`; by fundamental phasors, beyond the idle speed.
@@ -93,36 +55,7 @@ fn fundamental(of_a: impl Fn(f64) -> f64) -> Complex<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::Reference;
-
-    const SHAPES: [EmfShape; 3] = [
-        EmfShape::Sinusoidal,
-        EmfShape::Trapezoidal {
-            flat_top_deg: 120.0,
-        },
-        EmfShape::Trapezoidal { flat_top_deg: 97.0 },
-    ];
-
-    #[test]
-    fn the_share_of_a_sine_is_the_cosine() {
-        for degrees in [0.0_f64, 20.0, 45.0, 60.0, 75.0] {
-            let share = exact_share(EmfShape::Sinusoidal, degrees / 360.0);
-            assert!((share - degrees.to_radians().cos()).abs() < 1e-9);
-        }
-    }
-
-    #[test]
-    fn the_fit_is_a_third_of_a_percent_off_at_most() {
-        for shape in SHAPES {
-            let [c2, c4] = share_of_torque(shape);
-            for step in 0..=TURNS {
-                let turn = MOST_TURN * f64::from(step) / f64::from(TURNS);
-                let fitted = 1.0 - turn * turn * (c2 - c4 * turn * turn);
-                let off = fitted - exact_share(shape, turn);
-                assert!(off.abs() < 1.0 / 300.0, "{shape:?} at {turn}: {off}");
-            }
-        }
-    }
+    use crate::spec::{EmfShape, Reference};
 
     #[test]
     fn the_last_speed_is_that_of_a_simulated_drive() {
@@ -144,25 +77,5 @@ mod tests {
         let last = last_speed(&drive, 1000.0).expect("is below") * 60.0 / TAU;
         assert!((5300.0..5700.0).contains(&last), "{last}");
         assert_eq!(last_speed(&drive, 500.0), None);
-    }
-
-    /// By convexity in the set-point, the greatest phase current is that of the turned current or of none
-    /// along the EMF.
-    #[test]
-    fn a_turned_reference_is_no_greater_than_the_reference() {
-        for shape in SHAPES {
-            let [c2, c4] = share_of_torque(shape);
-            let current = |theta| proportional_current(shape, 1.0, theta);
-            let thetas = (0..720).map(|step| TAU * f64::from(step) / 720.0);
-            let peak = thetas.clone().map(current).fold(0.0, f64::max);
-            for step in 0..=TURNS {
-                let turn = MOST_TURN * f64::from(step) / f64::from(TURNS);
-                let share = 1.0 - turn * turn * (c2 - c4 * turn * turn);
-                for theta in thetas.clone() {
-                    let idle = current(theta + TAU * turn) - share * current(theta);
-                    assert!(idle.abs() <= 1.05 * peak, "{shape:?} at {turn}, {theta}");
-                }
-            }
-        }
     }
 }

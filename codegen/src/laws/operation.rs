@@ -4,11 +4,10 @@ use super::current_loop::{Allowance, LoopDesign};
 use super::start::start_rpm;
 use crate::blocks::OVER_SPEED_EDGES;
 use crate::design::vectors::SECTOR_CURRENT;
-use crate::design::weakening::MOST_TURN;
 use crate::diagnostics::{engineering, frequency, percent, rpm, significant};
 use crate::spec::{
-    BusCurrents, BusSource, CurrentSensor, CurrentSum, InverterSpec, RotorSensing, SensedPhases,
-    Spec,
+    BusCurrents, BusSource, CurrentSensor, CurrentSum, InverterSpec, MOST_TURN, RotorSensing,
+    SensedPhases, Spec,
 };
 use std::f64::consts::{FRAC_PI_3, TAU};
 

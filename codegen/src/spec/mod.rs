@@ -36,6 +36,7 @@ mod toml_syntax;
 pub mod units;
 mod value;
 mod variant;
+mod weakening;
 mod words;
 
 pub use angle::{AngleDirection, AngleSensor, RotorSource};
@@ -63,4 +64,5 @@ pub use sensing::{
 };
 pub use toml_syntax::{parse_board, parse_toml};
 pub use variant::{apply_variant, variant_of};
+pub use weakening::{MOST_TURN, share_of_torque};
 pub use words::Word;

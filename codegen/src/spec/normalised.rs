@@ -1,12 +1,12 @@
 //! The normalised text of a checked specification, as documented in `normalised.md`: TOML, SI
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
+use super::weakening::share_of_torque;
 use super::words::Words;
 use super::{
     BusCurrents, BusSource, CurrentSensing, EmfShape, InverterSpec, MotorSpec, RotorSensing,
     SensedPhases, SensingTimes, Spec,
 };
-use crate::design::weakening::share_of_torque;
 use crate::spec::ControllerSpec;
 use std::fmt::{Debug, Display};
 
