@@ -480,7 +480,7 @@ impl Code {
                 "EMF and torque constant are one number in SI units. Of a sinusoidal motor only the means over block commutation are, as Maxon and others print them; the peak is pi/3 times that, 4.7 % more.",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"\nback_emf = \"0.1648 V/(rad/s) block_mean\"",
-                "Write `block_mean` in place of `line_to_line peak` in `back_emf`. A `torque_constant` without basis is compared as the mean; if the data sheet says per ampere of a sine's peak or rms, write `per_peak_ampere` or `per_rms_ampere` there.",
+                "Write `block_mean` in place of `line_to_line peak` in `back_emf` or `speed_constant`. A `torque_constant` without basis makes this warning, too; where it is per ampere of a sine, say `per_peak_ampere` or `per_rms_ampere` instead.",
             ),
             Self::RatingBeyondBus => say(
                 "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",
