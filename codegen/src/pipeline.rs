@@ -154,10 +154,20 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
     let taken = envelope.bus_voltage(rated, set_point);
     let bus = spec.inverter.v_bus;
     (taken > bus * (1.0 + 1e-9)).then(|| {
+        let voltages = envelope.voltages(rated, set_point);
+        let values = [
+            origins.emf_constant(),
+            origins.of_motor("resistance"),
+            origins.of_motor("inductance"),
+        ];
+        if let Some(value) = catalogue::most_of_absurd([bus, taken], voltages, values) {
+            return catalogue::thousandfold(Code::RatingBeyondBus, &value, [bus, taken]);
+        }
         let beyond = catalogue::Beyond {
             torques: [torque, envelope.torque(rated)],
             speed: envelope.speed(torque),
-            bus: [bus, taken],
+            bus,
+            raised: Some(taken).filter(|taken| spec.inverter.bus.takes(*taken)),
         };
         let given = origins.given(SPEED, "");
         catalogue::rating_beyond_bus((origins.at(SPEED), &given), &beyond)

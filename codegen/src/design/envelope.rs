@@ -123,6 +123,15 @@ impl Envelope {
         most.fold(0.0, f64::max) / self.reach
     }
 
+    /// What EMF, resistance and inductance take between two legs of a set-point in ampere at a speed in mechanical
+    /// rad/s, volt: the inductance what the others leave of the whole.
+    pub fn voltages(&self, omega_m: f64, set_point: f64) -> [f64; 3] {
+        let whole = |omega_m| self.reach * self.bus_voltage(omega_m, set_point);
+        let drop = whole(0.0);
+        let emf = omega_m * self.emf_constant * self.emf_shape.line_to_line_peak();
+        [emf, drop, (whole(omega_m) - emf - drop).max(0.0)]
+    }
+
     /// Greatest phase current of the largest set-point, ampere.
     pub fn peak_current(&self) -> f64 {
         self.max_current * self.emf_shape.current_peak(self.reference)

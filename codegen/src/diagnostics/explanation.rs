@@ -227,7 +227,7 @@ impl Code {
                 "Raise the PWM frequency, or check R and L and their bases.",
             ),
             Self::BusTooLow => say(
-                "The line-to-line EMF at rated speed is more than the bus, or with the voltage drop of rated current in two phases more than 125 % of it: the motor cannot turn so fast on it, and probably a value is wrong.",
+                "The line-to-line EMF at rated speed is more than the bus, or with what rated current drops between two terminals more than 125 % of it: the motor cannot turn so fast on it, and probably a value is wrong. R and I are those of a phase and of the set-point's peak: the drop is 2 R I of a quasi-square current, and sqrt(3) R I of a sine.",
                 "rated_speed = \"5000 rpm\"",
                 "rated_speed = \"2000 rpm\"",
                 "Data sheets often print the no-load speed as speed: write it as `no_load_speed`, and the speed under load as `rated_speed`; else check the bases of EMF and resistance.",
@@ -480,7 +480,7 @@ impl Code {
                 "EMF and torque constant are one number in SI units. Of a sinusoidal motor only the means over block commutation are, as Maxon and others print them; the peak is pi/3 times that, 4.7 % more.",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"\nback_emf = \"0.1648 V/(rad/s) block_mean\"",
-                "Write `block_mean` in place of `line_to_line peak` in `back_emf`.",
+                "Write `block_mean` in place of `line_to_line peak` in `back_emf` or `speed_constant`. A `torque_constant` without basis makes this warning, too; where it is per ampere of a sine, say `per_peak_ampere` or `per_rms_ampere` instead.",
             ),
             Self::RatingBeyondBus => say(
                 "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",

@@ -216,6 +216,9 @@ impl Entry {
         }
         // `a: 1 ohm b: 2 H`: the comma in between was forgotten.
         if let Some(colon) = value.iter().position(|token| is_punct(token, ':')) {
+            if name == "controller" && !follows_a_word(value, colon) {
+                return Err(catalogue::syntax(&location(value), OPTIONS));
+            }
             let next = &value[colon.saturating_sub(1)..=colon];
             return Err(catalogue::syntax(
                 &location(&next[..1]),
@@ -224,6 +227,16 @@ impl Entry {
         }
         Ok((name.to_string(), head, value))
     }
+}
+
+/// How a controller takes options; a command line has them as `pdcc:emf=model`.
+const OPTIONS: &str =
+    "options of a controller stand in braces, as in `controller: pdcc { emf: model }`";
+
+/// Whether the token before a colon stands behind another word, as the next entry does after a forgotten comma.
+fn follows_a_word(value: &[TokenTree], colon: usize) -> bool {
+    let before = colon.checked_sub(2).and_then(|index| value.get(index));
+    before.is_some_and(|token| !matches!(token, TokenTree::Punct(_)))
 }
 
 fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic> {
@@ -284,6 +297,12 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
             )?;
         }
         ("controller", tokens) => read_controller(input, at, tokens)?,
+        _ if schema::section_of(&name).is_some_and(|section| section == "controller") => {
+            return Err(catalogue::syntax(
+                &at,
+                &format!("`{name}` is an option; {OPTIONS}"),
+            ));
+        }
         ("motor" | "board" | "inverter", _) => return Err(expected_section(value, &name)),
         _ => {
             input

@@ -254,6 +254,16 @@ pub enum BusSource {
     },
 }
 
+impl BusSource {
+    /// Whether the bus may have a nominal voltage of so many volt.
+    pub fn takes(self, nominal: f64) -> bool {
+        match self {
+            Self::Fixed => true,
+            Self::Measured { max, .. } => nominal < max,
+        }
+    }
+}
+
 /// Limits of the bus current, ampere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BusCurrents {

@@ -5,6 +5,7 @@ use super::part::{Part, with_parts};
 use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most,
 };
+use std::fmt;
 
 /// A bus voltage on the far side, `below` or `above`, of a board's limit.
 pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
@@ -71,6 +72,20 @@ pub enum BusRemedy {
     Current(f64),
 }
 
+impl fmt::Display for BusRemedy {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Speed(reachable) => {
+                write!(out, "lower `rated_speed` to {}", rpm_at_most(reachable))
+            }
+            Self::Current(reachable) => {
+                let most = engineering(at_most(reachable), "A");
+                write!(out, "lower `rated_current` below {most}")
+            }
+        }
+    }
+}
+
 /// What is known of the EMF as stated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stated {
@@ -84,8 +99,35 @@ pub struct Stated {
 /// one of another basis.
 const LIKELY: [f64; 2] = [0.5, 1.5];
 
+/// A bus of so many times the stated one is no remedy: a value is wrong.
+const ABSURD: f64 = 10.0;
+
+/// Which of `values` makes most of a voltage that is absurd beside the bus. In volt: the bus; `taken`: what the
+/// rating takes; `voltages`: what each value makes of it.
+pub fn most_of_absurd<T>([bus, taken]: [f64; 2], voltages: [f64; 3], values: [T; 3]) -> Option<T> {
+    let pairs = voltages.into_iter().zip(values);
+    let most = pairs.max_by(|one, other| one.0.total_cmp(&other.0))?.1;
+    (taken > ABSURD * bus).then_some(most)
+}
+
+/// A value that makes most of a voltage that is absurd beside the bus.
+pub fn thousandfold(code: Code, value: &Part, [bus, taken]: [f64; 2]) -> Diagnostic {
+    Diagnostic::new(
+        code,
+        &value.location,
+        format!(
+            "`{}`: {} is likely a thousandfold off: the rating takes {}, most of it by this value, and the bus is {}; check the number and the prefix of its unit",
+            value.field,
+            value.given,
+            engineering(taken, "V"),
+            engineering(bus, "V"),
+        ),
+    )
+}
+
 /// EMF and resistive drop of the rating exceed the bus. In volt: the bus; `emf`: line to line at
-/// rated speed; `drop`: of rated current in two phases.
+/// rated speed; `drop`: of rated current between two terminals; `raised`: the bus that holds the rating, none
+/// where it is above the limit of a measured one.
 pub fn bus_too_low(
     bus: &Part,
     [speed, current, stated, resistance]: [&Part; 4],
@@ -94,17 +136,14 @@ pub fn bus_too_low(
         is_confirmed,
         is_peak,
     }: Stated,
-    remedy: BusRemedy,
+    (raised, remedy): (Option<f64>, BusRemedy),
 ) -> Diagnostic {
-    let remedy = match remedy {
-        BusRemedy::Speed(reachable) => format!("lower `rated_speed` to {}", rpm_at_most(reachable)),
-        BusRemedy::Current(reachable) => {
-            format!(
-                "lower `rated_current` below {}",
-                engineering(at_most(reachable), "A")
-            )
-        }
-    };
+    let raise = raised.map_or_else(String::new, |raised| {
+        format!(
+            "raise `bus_voltage` to {} (the inductance takes its part, too), ",
+            engineering(at_least(raised), "V")
+        )
+    });
     let trace = if !is_confirmed && is_peak && emf > LIKELY[1] / 2.0 * volts {
         "; a peak-to-peak voltage of a trace is written `peak_to_peak`"
     } else {
@@ -128,7 +167,7 @@ pub fn bus_too_low(
             Code::BusTooLow,
             &culprit.location,
             format!(
-                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and 2 R I = {}; raise the bus to {}, {remedy}, or check the bases of `{}` ({}) and `resistance` ({}){trace}",
+                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and a resistive drop of {}; {raise}{remedy}, or check the bases of `{}` ({}) and `resistance` ({}){trace}",
                 culprit.field,
                 culprit.given,
                 current.quoted(),
@@ -137,7 +176,6 @@ pub fn bus_too_low(
                 bus.given,
                 engineering(emf, "V"),
                 engineering(drop, "V"),
-                engineering(at_least(emf + drop), "V"),
                 stated.field,
                 stated.given,
                 resistance.given,
@@ -154,14 +192,19 @@ pub struct Beyond {
     pub torques: [f64; 2],
     /// Greatest speed of that rating's torque, mechanical rad/s; none if it is not held at any.
     pub speed: Option<f64>,
-    /// Bus voltages: the nominal one, and that which the rating takes, volt.
-    pub bus: [f64; 2],
+    /// Nominal bus voltage, volt.
+    pub bus: f64,
+    /// The one that the rating takes, volt; none above the limit of a measured bus.
+    pub raised: Option<f64>,
 }
 
 /// A rating at which the bus cuts the current's shape. `speed`: the rated speed and where it was written.
 pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Diagnostic {
     let [rated, held] = beyond.torques.map(|torque| engineering(torque, "Nm"));
-    let [bus, taken] = beyond.bus;
+    let raise = beyond.raised.map_or_else(String::new, |raised| {
+        let raised = engineering(at_least(raised), "V");
+        format!("raise `bus_voltage` to {raised}, or ")
+    });
     let lasts = beyond.speed.map_or_else(String::new, |speed| {
         format!("; the rating lasts to {}", rpm_at_most(speed))
     });
@@ -169,9 +212,8 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         Code::RatingBeyondBus,
         at,
         format!(
-            "`rated_speed`: {speed}: there the bus of {} drives the whole current up to {held} of the rating's {rated}, and beyond that the torque ripples and falls{lasts}; raise `bus_voltage` to {}, or lower `rated_speed`",
-            engineering(bus, "V"),
-            engineering(at_least(taken), "V"),
+            "`rated_speed`: {speed}: there the bus of {} drives the whole current up to {held} of the rating's {rated}, and beyond that the torque ripples and falls{lasts}; {raise}lower `rated_speed`",
+            engineering(beyond.bus, "V"),
         ),
     )
 }

@@ -203,11 +203,11 @@ pub fn over_speed(speed: &Part, rated: &Part, period: &Part, range: [f64; 2]) ->
             Code::OverSpeed,
             &speed.location,
             format!(
-                "`over_speed`: {} lies outside {}, where a turn is a control period shorter than at `rated_speed` {}, to {}, beyond which it is not measured; give a speed within, or raise `f_pwm`",
+                "`over_speed`: {} lies outside the accepted {} to {}: below, an error of one control period in the time of a turn may trip a run at `rated_speed` {}; above, too few control periods fall into an electrical turn to measure the speed; give a speed within, or raise `f_pwm`",
                 speed.given,
                 rpm_at_least(least),
-                rated.given,
                 rpm_at_most(fastest),
+                rated.given,
             ),
         ),
         &[rated, period],

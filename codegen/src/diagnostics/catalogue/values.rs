@@ -3,6 +3,7 @@
 use super::Part;
 use super::structure::did_you_mean;
 use crate::diagnostics::{Code, Diagnostic, Location, list, significant};
+use crate::spec::units::Dimension;
 
 /// A value that cannot be read.
 pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
@@ -119,11 +120,19 @@ pub fn wrong_dimension(
     wanted: &str,
     examples: &[String],
 ) -> Diagnostic {
+    // The compiler refuses the sign and hands the rest to the macro.
+    let is_square = matches!(at, Location::Macro(_))
+        && (got, wanted) == (Dimension::Torque.name(), Dimension::Inertia.name());
+    let square = if is_square {
+        "; a superscript 2 is no Rust token, write `2`"
+    } else {
+        ""
+    };
     Diagnostic::new(
         Code::WrongDimension,
         at,
         format!(
-            "`{field}`: {given} is {got}, but {wanted} is expected; {}",
+            "`{field}`: {given} is {got}, but {wanted} is expected; {}{square}",
             like(at, field, examples)
         ),
     )

@@ -131,7 +131,13 @@ fn claims<'a>(
     let (block, sine) = (shape.quasi_square_factor(), shape.sine_factor());
     let mut claims = Vec::new();
     if let (Some(torque), Some(current)) = (&motor.rated_torque, &motor.rated_current) {
-        let mut factors = vec![block];
+        // Of one root mean square a block has another plateau than a sine has a peak.
+        let plateau = if current.basis.contains(&Basis::Rms) {
+            1.5_f64.sqrt() / shape.rated_peak()
+        } else {
+            1.0
+        };
+        let mut factors = vec![block * plateau];
         // A sinusoidal current of the same peak, too.
         factors.extend((!matches!(shape, EmfShape::Trapezoidal { .. })).then_some(sine));
         let amperes = current.si;
@@ -264,7 +270,7 @@ fn fitting<'a>(
         let change = "`rated_current` as `rms`".to_owned();
         let at = &current.part;
         let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
-        let constant = factor * phase * shape.rated_peak();
+        let constant = Reading::PerRmsAmpere.factor(shape) * phase;
         candidates.push((Other { change, at, phase }, constant));
     }
     if claim.code == Code::TorqueConstantContradiction {

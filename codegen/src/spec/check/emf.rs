@@ -79,10 +79,15 @@ impl Reading {
 pub(super) fn words(given: &Given, reading: Reading) -> String {
     let words = reading.words();
     if given.basis.contains(&Basis::PeakToPeak) {
-        words.replace("peak", "peak_to_peak")
+        doubled(words)
     } else {
         words.to_owned()
     }
+}
+
+/// Basis words of an amplitude for what is stated from peak to peak.
+fn doubled(words: &str) -> String {
+    words.replace("peak", "peak_to_peak")
 }
 
 /// The amplitude of what is stated from peak to peak.
@@ -264,6 +269,47 @@ fn read_back_emf<'a>(
     Some(Emf { given, reading })
 }
 
+/// What a reading of an EMF constant says, from peak to peak or not.
+fn meaning(reading: Reading, is_double: bool) -> &'static str {
+    match reading {
+        Reading::PhasePeak if is_double => "from peak to peak of one phase",
+        Reading::PhasePeak => "amplitude of one phase",
+        Reading::LinePeak if is_double => "from peak to peak between two terminals",
+        Reading::LinePeak => "amplitude between two terminals",
+        Reading::PhaseRms => "root mean square of one phase",
+        Reading::LineRms => "root mean square between two terminals",
+        _ => "mean over block commutation, between two terminals",
+    }
+}
+
+/// A reading of an EMF constant as it is written, from peak to peak or not, and its meaning. Of a constant from
+/// peak to peak, `given` is the amplitude.
+fn form(
+    given: &Given,
+    reading: Reading,
+    is_double: bool,
+    shape: Option<EmfShape>,
+) -> (String, String) {
+    let words = reading.words();
+    let words = if is_double {
+        doubled(words)
+    } else {
+        words.to_owned()
+    };
+    let what = meaning(reading, is_double);
+    let meaning = shape.map_or_else(
+        || what.to_owned(),
+        |shape| {
+            let given = given.clone();
+            // A flux linkage says its basis by itself.
+            let phase = Emf { given, reading }.phase_constant(shape, 1);
+            let torque = engineering(phase * shape.quasi_square_factor(), "Nm/A");
+            format!("{what}: {torque} in block commutation")
+        },
+    );
+    (with_words(given, &words), meaning)
+}
+
 /// The readings of an EMF constant that does not say its basis, each with the torque per ampere of
 /// block commutation that it means.
 fn push_forms(
@@ -286,33 +332,17 @@ fn push_forms(
         };
         refers && means
     };
-    let meaning = |reading: Reading| {
-        let what = match reading {
-            PhasePeak => "amplitude of one phase",
-            LinePeak => "amplitude between two terminals",
-            PhaseRms => "root mean square of one phase",
-            LineRms => "root mean square between two terminals",
-            _ => "mean over block commutation, between two terminals",
-        };
-        shape.map_or_else(
-            || what.to_owned(),
-            |shape| {
-                let given = given.clone();
-                // A flux linkage says its basis by itself.
-                let phase = Emf { given, reading }.phase_constant(shape, 1);
-                let torque = phase * shape.quasi_square_factor();
-                format!("{what}: {}", engineering(torque, "Nm/A"))
-            },
-        )
-    };
-    let forms: Vec<(String, String)> = [PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean]
+    let is_double = given.basis.contains(&Basis::PeakToPeak);
+    let mut forms: Vec<(String, String)> = [PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean]
         .into_iter()
         .filter(fits)
-        .map(|reading| {
-            let words = words(given, reading);
-            (with_words(given, &words), meaning(reading))
-        })
+        .map(|reading| form(given, reading, is_double, shape))
         .collect();
+    // Of a trace between two terminals.
+    if line && amplitude.is_none() && given.dimension == Some(Dimension::EmfConstant) {
+        let halved = self::amplitude(given.clone());
+        forms.insert(1, form(&halved, LinePeak, true, shape));
+    }
     let part = &given.part;
     errors.push(catalogue::missing_basis(
         &part.location,

@@ -57,7 +57,8 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
     if !contradicts {
         // Torque and EMF in one wrong basis are one mistake.
-        relations::check_bus(&motor_reader, &motor, &inverter, &mut errors);
+        let reference = controller.as_ref().map(|spec| spec.common().reference);
+        relations::check_bus(&motor_reader, &motor, &inverter, reference, &mut errors);
     }
     sensing_window::check(
         &inverter_reader,

@@ -10,6 +10,15 @@ use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::{AngleSensor, EmfShape, HALL_ANGLES, MotorSpec, RotorSource};
 
+/// The usual shapes of the EMF, and which motors have them.
+const EMF_SHAPES: [(&str, &str); 2] = [
+    ("sinusoidal", "most servo, hub and outrunner motors"),
+    (
+        "trapezoidal",
+        "motors sold as BLDC whose EMF has a flat top",
+    ),
+];
+
 /// The motor as far as it could be read.
 pub(super) struct Motor<'a> {
     pub description: String,
@@ -37,14 +46,9 @@ pub(super) struct Motor<'a> {
 }
 
 pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a> {
-    let names = [
-        "resistance",
-        "inductance",
-        "emf_shape",
-        "rated_current",
-        "rated_speed",
-    ];
+    let names = ["resistance", "inductance", "rated_current", "rated_speed"];
     reader.require(errors, &names);
+    reader.require_choice(errors, "emf_shape", &EMF_SHAPES);
     reader.require_any_of(errors, &emf::FIELDS);
     reader.require_one_of(errors, ["pole_pairs", "poles"]);
     let pole_pairs = read_pole_pairs(reader, errors);

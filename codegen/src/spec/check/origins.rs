@@ -1,5 +1,7 @@
 //! Where the values of a checked specification were written, for the errors of later stages.
 
+use super::emf;
+use crate::diagnostics::catalogue::Part;
 use crate::diagnostics::{Diagnostic, Location};
 use crate::spec::ast::{Section, SpecAst};
 use std::collections::BTreeMap;
@@ -80,6 +82,23 @@ impl Origins {
             || format!("{default} (default)"),
             |origin| origin.given.clone(),
         )
+    }
+
+    /// A field of the motor without default.
+    pub fn of_motor(&self, field: &'static str) -> Part {
+        let path = format!("motor.{field}");
+        Part {
+            field,
+            given: self.given(&path, ""),
+            location: self.at(&path).clone(),
+        }
+    }
+
+    /// The field from which the EMF constant was taken.
+    pub fn emf_constant(&self) -> Part {
+        let is_given = |field: &&str| self.is_given(&format!("motor.{field}"));
+        let field = emf::FIELDS.into_iter().find(is_given);
+        self.of_motor(field.unwrap_or(emf::FIELDS[0]))
     }
 
     /// What the checks warn of: values that fit, and are probably not meant so.

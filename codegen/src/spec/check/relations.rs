@@ -2,11 +2,12 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
+use crate::design::Envelope;
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, at_least, engineering};
+use crate::diagnostics::{Code, Collector, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
-use crate::spec::{BusSource, RotorSensing};
+use crate::spec::{BusSource, MotorSpec, Reference, RotorSensing};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.
@@ -54,49 +55,81 @@ pub(super) fn check_period(
 /// Most of the bus that EMF and resistive drop of a rating may take: beyond it a value is rather wrong.
 const MOST_OF_BUS: f64 = 1.25;
 
-/// Accepted: a bus that covers the line-to-line EMF at rated speed and what rated current drops in
-/// two phases, or misses that by a little. Refused: a rating far beyond, of which a value is wrong. An
+/// Accepted: a bus that covers the line-to-line EMF at rated speed, and with what rated current drops
+/// between two terminals misses that by a little. Refused: a rating far beyond, of which a value is wrong. An
 /// accepted rating is not promised to be held: the envelope of the whole drive tells.
 pub(super) fn check_bus(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
+    reference: Option<Reference>,
     errors: &mut Collector,
 ) -> Option<()> {
-    let (bus, speed, current, back_emf) = (
+    let (bus, speed, current) = (
         inverter.v_bus.as_ref()?,
         motor.rated_speed.as_ref()?,
         motor.rated_current.as_ref()?,
-        &motor.emf.first()?.given,
     );
-    let shape = motor.emf_shape?;
-    let line_to_line = motor.emf_constant? * shape.line_to_line_peak();
-    let emf = line_to_line * speed.si;
-    let resistance_of_two = 2.0 * motor.resistance?;
-    let drop = resistance_of_two * current.si;
-    let taken = emf + drop;
-    let is_near = emf < bus.si && drop < bus.si / 2.0 && taken < MOST_OF_BUS * bus.si;
-    if is_near || taken <= bus.si * (1.0 + 1e-9) {
+    let stated = &motor.emf.first()?.given;
+    let whole = motor.finish()?;
+    let envelope = envelope(&whole, inverter, reference?)?;
+    let set_point = current.si * whole.rated_torque_constant() / envelope.torque_constant();
+    let voltages = envelope.voltages(speed.si, set_point);
+    let [emf, drop, _] = voltages;
+    let most = bus.si * (1.0 + 1e-9);
+    if emf <= most && emf + drop <= MOST_OF_BUS * most {
         return Some(());
     }
-    let reached = (bus.si - drop) / line_to_line;
-    let remedy = if drop < bus.si {
-        catalogue::BusRemedy::Speed(reached)
-    } else {
-        catalogue::BusRemedy::Current(current.si * bus.si / drop)
-    };
-    let resistance = reader.part("resistance", String::new);
+    // With these the rating is not beyond the envelope either.
+    let torque = whole
+        .torque_rating()
+        .max(set_point * envelope.torque_constant());
+    let raised = envelope.bus_voltage(speed.si, torque / envelope.torque_constant());
+    let [resistance, inductance] =
+        ["resistance", "inductance"].map(|name| reader.part(name, String::new));
+    let is_confirmed = motor.emf.len() > 1 || motor.rated_torque.is_some();
+    let values = [&stated.part, &resistance, &inductance];
+    let absurd = catalogue::most_of_absurd([bus.si, raised], voltages, values);
+    // A constant that another field states, too, is right.
+    if let Some(value) = absurd.filter(|value| value.field != stated.part.field || !is_confirmed) {
+        let error = catalogue::thousandfold(Code::BusTooLow, value, [bus.si, raised]);
+        errors.push(error);
+        return Some(());
+    }
     errors.push(catalogue::bus_too_low(
         &bus.part,
-        [&speed.part, &current.part, &back_emf.part, &resistance],
+        [&speed.part, &current.part, &stated.part, &resistance],
         [bus.si, emf, drop],
         catalogue::Stated {
-            is_confirmed: motor.emf.len() > 1 || motor.rated_torque.is_some(),
-            is_peak: back_emf.basis.contains(&Basis::Peak),
+            is_confirmed,
+            is_peak: stated.basis.contains(&Basis::Peak),
         },
-        remedy,
+        (
+            Some(raised).filter(|raised| inverter.bus.is_none_or(|bus| bus.takes(*raised))),
+            envelope.speed(torque).map_or(
+                catalogue::BusRemedy::Current(current.si * bus.si / drop),
+                catalogue::BusRemedy::Speed,
+            ),
+        ),
     ));
     Some(())
+}
+
+/// The envelope of a drive whose legs reach the whole bus: what windows of sensors take is not known yet.
+fn envelope(motor: &MotorSpec, inverter: &Inverter, reference: Reference) -> Option<Envelope> {
+    Some(Envelope {
+        emf_shape: motor.emf_shape,
+        reference,
+        pole_pairs: f64::from(motor.pole_pairs),
+        resistance: motor.resistance,
+        inductance: motor.inductance,
+        emf_constant: motor.emf_constant,
+        t_s: inverter.t_s?,
+        v_bus: inverter.v_bus.as_ref()?.si,
+        reach: 1.0,
+        max_current: f64::INFINITY,
+        bus_current: None,
+    })
 }
 
 /// Least speed that the Hall timer can measure, mechanical rad/s; none with an angle.

@@ -104,7 +104,7 @@ impl<'a> Reader<'a> {
         fields: &[(&str, &str)],
     ) {
         for (name, example) in fields {
-            if self.field(name).is_none() {
+            if self.may_lack(name) {
                 let at = self.field(of).map_or(&self.at, |field| &field.location);
                 let setting = format!("{of}: {value}");
                 errors.push(catalogue::needed_field(at, &setting, name, example));
@@ -167,14 +167,18 @@ impl<'a> Reader<'a> {
         let known: Vec<&str> = self.rules.iter().map(|rule| rule.name).collect();
         self.section.fields.iter().any(|field| {
             !known.contains(&field.name.as_str())
+                && !other_names::is_unused(&field.name)
                 && other_names::meant(&field.name)
                     .or_else(|| catalogue::nearest(&field.name, &known))
                     == Some(name)
         })
     }
 
-    /// What to write for a field of this section that is given under another name.
+    /// What to do about a field of this section that is given under another name, or that nothing takes.
     fn remedy(&self, field: &Field) -> Option<String> {
+        if other_names::is_unused(&field.name) {
+            return Some("no controller needs this value; leave it out".to_owned());
+        }
         let meant = other_names::meant(&field.name)?;
         let is_here = self.rules.iter().any(|rule| rule.name == meant);
         is_here.then(|| other_names::remedy(meant, field))

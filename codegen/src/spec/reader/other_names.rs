@@ -5,7 +5,7 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 7] = [
+const NAMES: [(&str, &[&str]); 8] = [
     (
         "poles",
         &[
@@ -42,6 +42,46 @@ const NAMES: [(&str, &[&str]); 7] = [
             "max_continuous_current",
         ],
     ),
+    (
+        "bus_adc_range",
+        &[
+            "bus_divider",
+            "bus_adc_divider",
+            "bus_voltage_divider",
+            "voltage_divider",
+        ],
+    ),
+];
+
+/// What data sheets print and no controller here uses. Their letters are near to those of other fields:
+/// `idle_current` to `rated_current`.
+const UNUSED: [&str; 26] = [
+    "idle_current",
+    "no_load_current",
+    "stall_current",
+    "starting_current",
+    "stall_torque",
+    "starting_torque",
+    "peak_torque",
+    "max_torque",
+    "cogging_torque",
+    "detent_torque",
+    "friction_torque",
+    "efficiency",
+    "max_efficiency",
+    "rated_power",
+    "nominal_power",
+    "max_power",
+    "thermal_resistance",
+    "thermal_time_constant",
+    "thermal_time_constant_winding",
+    "mechanical_time_constant",
+    "electrical_time_constant",
+    "speed_torque_gradient",
+    "motor_constant",
+    "max_winding_temperature",
+    "weight",
+    "mass",
 ];
 
 /// Words of data sheets and files for those that fields take.
@@ -93,8 +133,16 @@ pub(super) fn meant(name: &str) -> Option<&'static str> {
     row.map(|(field, _)| *field)
 }
 
+/// Whether nothing takes a value of this name.
+pub(super) fn is_unused(name: &str) -> bool {
+    UNUSED.contains(&name.to_lowercase().as_str())
+}
+
 /// What to write in the field `meant` for the value of another one, a clause.
 pub(super) fn remedy(meant: &str, field: &Field) -> String {
+    if meant == "bus_adc_range" {
+        return "write `bus_adc_range`, the bus voltage at the converter's last count: its reference times (R_high + R_low)/R_low".to_owned();
+    }
     let Value::Number(number) = &field.value else {
         return format!("did you mean `{meant}`?");
     };

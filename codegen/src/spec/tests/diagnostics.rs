@@ -312,6 +312,21 @@ fn garbage_is_refused_without_a_panic() {
     }
 }
 
+/// What a remedy says must not lead into the next warning.
+#[test]
+fn remedies_of_a_bus_that_is_too_low_are_accepted_without_a_warning() {
+    let codes = |delta: &str| {
+        let found = found_in_call(&changed(COMPLETE_CALL, delta));
+        found.iter().map(|found| found.code).collect::<Vec<_>>()
+    };
+    assert_eq!(codes("bus_voltage: 24 V"), [Code::BusTooLow]);
+    assert_eq!(codes("bus_voltage: 44.08 V"), []);
+    assert_eq!(codes("bus_voltage: 24 V; rated_speed: 982.4 rpm"), []);
+    // A sine drops less between two terminals than two resistances do: 27.2 V of these 29.6 V.
+    let sine = "resistance: 620 mohm line_to_line; inductance: 0.1 mH line_to_line; back_emf: 270 rpm/V line_to_line peak; emf_shape: sinusoidal; -rated_torque; rated_current: 30 A; rated_speed: 3000 rpm; bus_voltage: 29.6 V; f_pwm: 50 kHz; adc_range: 80 A";
+    assert_eq!(codes(sine), []);
+}
+
 #[test]
 fn an_empty_file_lacks_all_sections() {
     let codes: Vec<Code> = found_in_file("").iter().map(|error| error.code).collect();

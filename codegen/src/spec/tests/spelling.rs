@@ -250,11 +250,11 @@ fn no_remedy_offers_a_basis_that_was_not_named() {
         ),
         (
             "12.2 V/krpm rms",
-            r#"write `back_emf = "12.2 V/krpm phase rms"` (root mean square of one phase: 264.2 mNm/A) or `back_emf = "12.2 V/krpm line_to_line rms"` (root mean square between two terminals: 156.3 mNm/A)"#.to_owned(),
+            r#"write `back_emf = "12.2 V/krpm phase rms"` (root mean square of one phase: 264.2 mNm/A in block commutation) or `back_emf = "12.2 V/krpm line_to_line rms"` (root mean square between two terminals: 156.3 mNm/A in block commutation)"#.to_owned(),
         ),
         (
             "17.3 V/krpm phase",
-            r#"write `back_emf = "17.3 V/krpm phase peak"` (amplitude of one phase: 330.4 mNm/A) or `back_emf = "17.3 V/krpm phase rms"` (root mean square of one phase: 374.6 mNm/A)"#.to_owned(),
+            r#"write `back_emf = "17.3 V/krpm phase peak"` (amplitude of one phase: 330.4 mNm/A in block commutation) or `back_emf = "17.3 V/krpm phase rms"` (root mean square of one phase: 374.6 mNm/A in block commutation)"#.to_owned(),
         ),
         (
             "550 rpm/V phase",
