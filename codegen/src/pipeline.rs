@@ -1,7 +1,6 @@
 //! The pipeline: from a checked specification to a verified graph and its interface.
 
 use crate::at_once::at_once;
-use crate::design::Envelope;
 use crate::design::weakening::last_speed;
 use crate::diagnostics::{
     Code, Collector, Diagnostic, Diagnostics, catalogue, engineering, percent, rpm,
@@ -15,7 +14,7 @@ use crate::laws::{
 };
 use crate::scaling::{Scaled, Unscalable, choose_scale};
 use crate::spec::health::TRIP_BY_DEFAULT;
-use crate::spec::{InverterSpec, Origins, Spec};
+use crate::spec::{Envelope, InverterSpec, Origins, Spec};
 use crate::stopwatch::Part;
 use crate::timing::StepTime;
 

@@ -4,11 +4,12 @@
 use super::Lowering;
 use super::number::round_half_up;
 use super::rotor::Rotor;
-use crate::design::emf::{Parabolas, proportional_current, zero_sum_integral};
+use crate::design::emf::Parabolas;
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
 use crate::ir::{Exact, Expr, Lut, Named, Periodic, Phases, Real, named};
+use crate::spec::{proportional_current, zero_sum_integral};
 
 /// A third of a turn: phase b lags phase a by it.
 const THIRD_TURN: i64 = 1_431_655_765;

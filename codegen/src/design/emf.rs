@@ -3,35 +3,7 @@
 //! Convention (`hexagen::conventions`): f_a(0) = 0 and rising, b lags by 120 degrees, unit phase
 //! peak.
 
-use crate::spec::EmfShape;
 use std::f64::consts::TAU;
-
-const THIRD: f64 = TAU / 3.0;
-
-/// Integral over the angle of the part of phase a's unit EMF that drives current, zero mean, radians.
-pub fn zero_sum_integral(shape: EmfShape, theta: f64) -> f64 {
-    let f = |shift: f64| shape.integral(theta - shift);
-    f(0.0) - (f(0.0) + f(THIRD) + f(2.0 * THIRD)) / 3.0
-}
-
-/// A function of phase a for the three phases.
-pub fn phases(of_a: impl Fn(f64) -> f64, theta: f64) -> [f64; 3] {
-    [0.0, THIRD, 2.0 * THIRD].map(|shift| of_a(theta - shift))
-}
-
-/// Phase-a current per ampere of set-point, parallel to the EMF and of constant torque:
-/// (2/3) (k_t/k_phase) s_a / |f|^2 with `ratio` = k_t/k_phase.
-pub fn proportional_current(shape: EmfShape, ratio: f64, theta: f64) -> f64 {
-    let [of_a, ..] = proportional_currents(shape, ratio, theta);
-    of_a
-}
-
-/// The same for the three phases.
-pub fn proportional_currents(shape: EmfShape, ratio: f64, theta: f64) -> [f64; 3] {
-    let length = shape.squared_length(theta);
-    let phases = shape.zero_sum(theta);
-    phases.map(|value| 2.0 / 3.0 * ratio * value / length)
-}
 
 /// A periodic function as parabolas over equal segments of a turn.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +72,7 @@ impl Parabolas {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spec::{EmfShape, proportional_current, zero_sum_integral};
     use std::f64::consts::PI;
 
     const SHAPES: [EmfShape; 3] = [

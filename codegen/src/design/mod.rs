@@ -1,10 +1,8 @@
 //! From the checked specification to the numbers of the control law, in f64 and SI units.
 
 pub mod emf;
-mod envelope;
 mod plant;
 pub mod vectors;
 pub mod weakening;
 
-pub use envelope::Envelope;
 pub use plant::DiscretePlant;

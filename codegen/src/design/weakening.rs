@@ -1,8 +1,6 @@
 //! Field weakening: up to which speed it holds the EMF within the bus.
 
-use super::emf::proportional_current;
-use super::envelope::Envelope;
-use crate::spec::MOST_TURN;
+use crate::spec::{Envelope, MOST_TURN, proportional_current};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 

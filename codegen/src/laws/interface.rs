@@ -6,7 +6,6 @@ use super::constants::{constants, ratios};
 use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
 use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale};
-use crate::design::Envelope;
 use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
     AngleSensor, Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors,
@@ -14,7 +13,7 @@ use crate::interface::{
 };
 use crate::scaling::Scaled;
 use crate::spec::{
-    self, CurrentSensing, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
+    self, CurrentSensing, Envelope, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
 };
 use crate::timing::{self, Asked};
 use std::f64::consts::TAU;

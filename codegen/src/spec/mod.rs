@@ -16,6 +16,7 @@ mod board_library;
 pub(crate) mod check;
 pub(crate) mod controller;
 mod emf_shape;
+mod envelope;
 mod field_rule;
 pub(crate) mod field_texts;
 mod harmonics;
@@ -48,6 +49,8 @@ pub use controller::{
     Kind, LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates,
     PhccSpec, PiPwmSpec, Reference, SpeedLoop, SwitchingTable, Target,
 };
+pub use emf_shape::{proportional_current, zero_sum_integral};
+pub use envelope::Envelope;
 pub use harmonics::{Harmonics, ORDERS};
 pub use load::{load_motor_file, motor_text};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};

@@ -6,7 +6,7 @@
 //! that the legs reach, and each phase current within the peak of the drive's own reference at its largest
 //! set-point. The mean torque (3/2) e.i/omega is linear, so a linear program finds the best profile.
 
-use hexagen_codegen::design::Envelope;
+use hexagen_codegen::spec::Envelope;
 use microlp::{ComparisonOp, LinearExpr, OptimizationDirection, Problem, SolveOutcome, Variable};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 

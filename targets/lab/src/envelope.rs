@@ -2,7 +2,7 @@
 
 use crate::any_profile;
 use crate::plant::PlantParams;
-use hexagen_codegen::design::Envelope;
+use hexagen_codegen::spec::Envelope;
 use hexagen_codegen::spec::Spec;
 use serde::Serialize;
 use std::f64::consts::TAU;

@@ -4,7 +4,7 @@ use crate::closed_loop::{ClosedLoop, Measurement, Trip};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use crate::plant::{Mechanics, Plant};
 use crate::{LabError, Progress};
-use hexagen_codegen::design::Envelope;
+use hexagen_codegen::spec::Envelope;
 use hexagen_codegen::spec::{RotorSensing, Spec};
 use rayon::prelude::*;
 use serde::Serialize;

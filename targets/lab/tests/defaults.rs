@@ -5,7 +5,7 @@ mod exact;
 
 use encoder::with_encoder;
 use exact::least_ripple;
-use hexagen_codegen::design::Envelope;
+use hexagen_codegen::spec::Envelope;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, prepare};
 use hexagen_lab::motors::{
     FreeStart, Limit, RatedPoint, SPEEDS, can_be_right, degrees_per_period, greatest_ripple,

@@ -1,7 +1,7 @@
 //! The envelope is where the simulated bus begins to cut the current, and within it the torque is reached; no
 //! profile does better than the linear program's.
 
-use hexagen_codegen::design::Envelope;
+use hexagen_codegen::spec::Envelope;
 use hexagen_codegen::spec::{EmfShape, Reference};
 use hexagen_lab::any_profile;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};

@@ -67,7 +67,7 @@ const SPEEDS: [f64; 7] = [0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15];
 
 /// Torques over `demand`, in the direction of rotation, both ways, at each of the speeds up to `last`.
 fn curves(drive: &Prepared, share: f64, speeds: &[f64]) -> Vec<Vec<f64>> {
-    let idle = hexagen_codegen::design::Envelope::of(&drive.spec).idle_speed();
+    let idle = hexagen_codegen::spec::Envelope::of(&drive.spec).idle_speed();
     let demand = share * drive.demand();
     [1.0, -1.0]
         .into_par_iter()

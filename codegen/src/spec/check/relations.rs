@@ -2,12 +2,11 @@
 
 use super::inverter::Inverter;
 use super::motor::Motor;
-use crate::design::Envelope;
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Code, Collector, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
-use crate::spec::{BusSource, MotorSpec, Reference, RotorSensing};
+use crate::spec::{BusSource, Envelope, MotorSpec, Reference, RotorSensing};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.

@@ -12,7 +12,7 @@ use crate::robustness::robustness;
 use crate::text::significant;
 use crate::verification::{Checked, verify_drives};
 use crate::{LabError, Progress};
-use hexagen_codegen::design::Envelope;
+use hexagen_codegen::spec::Envelope;
 use hexagen_codegen::spec::{KINDS, RotorSensing};
 use rayon::prelude::*;
 use std::path::Path;

@@ -9,8 +9,8 @@
 //! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
 //! its two phases; its commutations take more and are left out.
 
-use super::emf::{phases, proportional_currents, zero_sum_integral};
-use crate::spec::{EmfShape, Reference, Spec};
+use super::emf_shape::{phases, proportional_currents, zero_sum_integral};
+use super::{EmfShape, Reference, Spec};
 use std::f64::consts::FRAC_PI_3;
 
 /// Angles of a sector at which the voltage is looked at. The shapes' symmetries repeat the rest of a turn.
