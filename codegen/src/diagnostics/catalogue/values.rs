@@ -3,7 +3,6 @@
 use super::Part;
 use super::structure::did_you_mean;
 use crate::diagnostics::{Code, Diagnostic, Location, list, significant};
-use crate::spec::units::Dimension;
 
 /// A value that cannot be read.
 pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
@@ -120,9 +119,8 @@ pub fn wrong_dimension(
     wanted: &str,
     examples: &[String],
 ) -> Diagnostic {
-    // The compiler refuses the sign and hands the rest to the macro.
-    let is_square = matches!(at, Location::Macro(_))
-        && (got, wanted) == (Dimension::Torque.name(), Dimension::Inertia.name());
+    // Of `gcm²` the compiler refuses the sign, and hands a torque to the macro.
+    let is_square = matches!(at, Location::Macro(_)) && (got, wanted) == ("a torque", "an inertia");
     let square = if is_square {
         "; a superscript 2 is no Rust token, write `2`"
     } else {

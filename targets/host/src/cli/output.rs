@@ -113,6 +113,9 @@ pub fn tell_warnings(drive: &Prepared) {
     for warning in &drive.warnings {
         note(warning);
     }
+    if drive.regulates_speed {
+        note("the speed loop is left out: this command sets the torque");
+    }
 }
 
 /// Writes a file completely or not at all.

@@ -54,15 +54,15 @@ struct Made {
 pub fn run(options: &Options) -> Result<(), Failure> {
     refuse_present(&options.file, options.force)?;
     let mut draft = Draft::of(given(&options.values)?, &options.file)?;
-    if !options.json && !std::io::stdin().is_terminal() {
-        note("nothing is asked without a terminal; give values as FIELD=VALUE arguments");
-    }
     if !options.json && std::io::stdin().is_terminal() {
         // Before questions are asked in vain.
         checked(&draft.text(), &options.file, false)?;
         draft.ask(&mut std::io::stdin().lock().lines(), &options.file)?;
     }
     let missing = draft.missing();
+    if !options.json && !missing.is_empty() && !std::io::stdin().is_terminal() {
+        note("nothing is asked without a terminal; give values as FIELD=VALUE arguments");
+    }
     let text = draft.text();
     checked(&text, &options.file, missing.is_empty())?;
     write_new(&options.file, text.as_bytes(), options.force).map_err(|error| Failure::Write {

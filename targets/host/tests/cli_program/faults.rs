@@ -118,10 +118,6 @@ fn wrong_input_is_told() {
             &["faults", PAPER, "--controller", "pdcc:advance=9"],
             &["pdcc:advance=9:1:14"],
         ),
-        (
-            &["faults", "hurst-long", "--controller", "pdcc:speed_loop=on"],
-            &["`speed_loop=off`"],
-        ),
         (&["faults", PAPER, "--scale-l", "1e-9"], &["out of range"]),
     ] {
         run(arguments).assert_bad_input(texts);

@@ -275,14 +275,6 @@ fn options_out_of_range_or_at_odds_are_told() {
             ],
             "the run-up takes",
         ),
-        (
-            &["limit", WITH_INERTIA, "--controller", REGULATED],
-            "`speed_loop=off`",
-        ),
-        (
-            &["compare", WITH_INERTIA, "--controller", REGULATED],
-            "`speed_loop=off`",
-        ),
         (&["limit", PAPER, "--torque", "0"], "--torque 0"),
         (&["limit", PAPER, "--inertia", "1"], "--inertia"),
         (&["verify", PAPER, "--steps", "0"], "--steps"),

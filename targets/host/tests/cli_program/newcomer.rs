@@ -304,6 +304,23 @@ fn every_board_has_motors_and_says_why_others_do_not_fit() {
 }
 
 #[test]
+fn a_drive_with_a_speed_loop_is_judged_by_its_torque() {
+    let drive = ["hurst-long", "--controller", "pdcc:speed_loop=on"];
+    for command in ["check", "limit"] {
+        let said = run([command].iter().chain(&drive));
+        assert_eq!(said.code, 0, "{said:?}");
+        let note = "the speed loop is left out: this command sets the torque";
+        assert!(said.stderr.contains(note), "{said:?}");
+    }
+    // The time of its step is that of the whole drive.
+    let cycles = |variant: &str| {
+        let json = run(["check", "hurst-long", "--controller", variant, "--json"]).json();
+        number(&json["step"][0], "instructions")
+    };
+    assert!(cycles("pdcc:speed_loop=on") > cycles("pdcc") + 20.0);
+}
+
+#[test]
 fn check_tells_how_often_the_switches_turn_on() {
     // At 20 kHz; a leg that reaches an end of the period does not switch in it.
     for (variant, kilohertz) in [

@@ -91,14 +91,8 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
     let mut rates: Vec<String> = rates.collect();
     rates.dedup();
-    // What is judged is the torque.
-    let speed_loop = if drive.regulates_speed {
-        "; speed loop left out"
-    } else {
-        ""
-    };
     format!(
-        "{}, {edges}; switches at {} kHz{speed_loop}",
+        "{}, {edges}; switches at {} kHz",
         drive.spec.controller.kind(),
         rates.join(", ")
     )
