@@ -2,7 +2,7 @@
 
 use super::fade::Allowed;
 use super::number::round_half_up;
-use super::set_point::SetPointWords;
+use super::set_point::{SetPointWords, largest_set_point};
 use super::{Command, Lowering, OFF, PULSED};
 use crate::diagnostics::engineering;
 use crate::interface::Rounding;
@@ -91,8 +91,7 @@ impl<'b> BusCurrentLimit<'b> {
     pub fn allowed(&self, l: &Lowering<'b>, others: Option<Allowed<'b>>) -> Allowed<'b> {
         let doc = "Limits of the set-point by the bus current, alike in both directions.";
         l.b.stage("limit_bus_current", &[doc]);
-        let doc = "The largest set-point, words of voltage.";
-        let largest = l.number("j_largest", self.top, doc);
+        let largest = largest_set_point(l, self.top);
         let withheld = match self.extra {
             0 => self.withheld.read(),
             extra => self.withheld.read() >> extra,

@@ -271,7 +271,8 @@ impl<'b> ProportionalShape<'b> {
         Self { table, theta, unit }
     }
 
-    /// At another angle, which `when` names; added to the open stage.
+    /// The current of phases a and b at another angle; `when` stands in the names of its values. Added to the open
+    /// stage.
     pub fn at(&self, l: &Lowering<'b>, when: &str, theta: Expr<'b>) -> Phases<'b> {
         let theta_b = lagging(l, &format!("theta_{when}_b"), theta);
         Phases([

@@ -43,6 +43,11 @@ struct BusWords<'b> {
     ratio: Option<Param<'b>>,
 }
 
+/// The greatest set-point word that a setter makes, `top`, as a constant.
+pub fn largest_set_point<'b>(l: &Lowering<'b>, top: i64) -> Expr<'b> {
+    l.number("j_largest", top, "The largest set-point, words of voltage.")
+}
+
 /// Gain from a current set-point to a voltage.
 #[derive(Clone, Copy, Debug)]
 pub struct Gain {

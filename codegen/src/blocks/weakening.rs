@@ -10,7 +10,7 @@
 //! the set-point until |i| reaches I; then it falls with share(alpha).
 
 use super::emf::{ProportionalShape, lifted};
-use super::set_point::SetPointWords;
+use super::set_point::{SetPointWords, largest_set_point};
 use super::{Lowering, round_half_up};
 use crate::ir::{Exact, Expr, Flag, Interval, Memory, Phases, Real, named};
 use crate::spec::{MOST_TURN, share_of_torque};
@@ -84,8 +84,7 @@ impl<'b> FieldWeakening<'b> {
                 "The greatest current, turned against the field, less what the set-point does not ask of its part along the EMF.",
             ],
         );
-        let doc = "Greatest set-point as a voltage, words of voltage.";
-        let top = l.number("j_most", self.top, doc);
+        let top = largest_set_point(l, self.top);
         named! {
             let pushes = set_point.is_at_least(0);
             let theta_weak = shape.theta.angle_add(pushes.sign(angle));
@@ -97,7 +96,7 @@ impl<'b> FieldWeakening<'b> {
             let surplus = (j_along - set_point.abs()).max(0);
         }
         let ([top, surplus_lifted], shift) =
-            lifted([("j_most_lifted", top), ("surplus_lifted", surplus)]);
+            lifted([("j_largest_lifted", top), ("surplus_lifted", surplus)]);
         named! {
             let turned = turned.zip(shape.unit, |turned, unit| {
                 top.mul_floor(turned, shift) - surplus_lifted.mul_floor(unit, shift)

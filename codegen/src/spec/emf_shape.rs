@@ -261,9 +261,19 @@ pub fn proportional_currents(shape: EmfShape, ratio: f64, theta: f64) -> [f64; 3
     phases.map(|value| 2.0 / 3.0 * ratio * value / length)
 }
 
+/// Shapes of the tests.
+#[cfg(test)]
+pub(super) const SHAPES: [EmfShape; 3] = [
+    EmfShape::Sinusoidal,
+    EmfShape::Trapezoidal {
+        flat_top_deg: 120.0,
+    },
+    EmfShape::Trapezoidal { flat_top_deg: 97.0 },
+];
+
 #[cfg(test)]
 mod tests {
-    use super::{EmfShape, PI, TAU};
+    use super::{EmfShape, PI, SHAPES, TAU, proportional_current, zero_sum_integral};
     use crate::spec::Harmonics;
 
     fn trapezoid(flat_top_deg: f64) -> EmfShape {
@@ -392,5 +402,43 @@ mod tests {
         assert!(near(sine.quasi_square_factor(), 3.0 * 3f64.sqrt() / PI));
         assert!(near(sine.proportional_factor(), 1.5));
         assert!(near(sine.proportional_peak(), 1.0));
+    }
+
+    #[test]
+    fn the_integral_is_the_integral_of_the_shape() {
+        for shape in SHAPES {
+            let mut mean = 0.0;
+            for step in 0..720 {
+                let theta = f64::from(step) * TAU / 720.0 + 0.001;
+                let slope = (zero_sum_integral(shape, theta + 1e-5)
+                    - zero_sum_integral(shape, theta - 1e-5))
+                    / 2e-5;
+                assert!(
+                    (slope - shape.zero_sum(theta)[0]).abs() < 1e-4,
+                    "{shape:?} at {theta}"
+                );
+                mean += zero_sum_integral(shape, theta) / 720.0;
+            }
+            assert!(mean.abs() < 1e-5, "{shape:?}: mean {mean}");
+        }
+    }
+
+    #[test]
+    fn a_trapezoid_has_the_corners_of_table_1() {
+        let shape = EmfShape::Trapezoidal {
+            flat_top_deg: 120.0,
+        };
+        // Entry of S3 (90 degrees): (4/3, 0) E; entry of S2 (30 degrees): (2/3, -2/sqrt3) E.
+        assert!((shape.zero_sum(PI / 2.0)[0] - 4.0 / 3.0).abs() < 1e-12);
+        assert!((shape.zero_sum(PI / 6.0)[0] - 2.0 / 3.0).abs() < 1e-12);
+        assert!((shape.squared_length(PI / 6.0).sqrt() - 4.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_proportional_current_is_the_set_point_where_the_emf_peaks() {
+        for shape in SHAPES {
+            let current = proportional_current(shape, shape.proportional_factor(), PI / 2.0);
+            assert!((current - 1.0).abs() < 1e-12, "{shape:?}: {current}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Field weakening: the torque that a proportional current turned by an angle still makes.
 
 use super::EmfShape;
+use super::emf_shape::proportional_currents;
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
 
@@ -33,9 +34,7 @@ fn exact_share(shape: EmfShape, turn: f64) -> f64 {
     let torque = |turn: f64| {
         let at = |angle: u32| {
             let theta = TAU * f64::from(angle) / f64::from(ANGLES);
-            let ahead = theta + TAU * turn;
-            let length = shape.squared_length(ahead);
-            let currents = shape.zero_sum(ahead).map(|value| value / length);
+            let currents = proportional_currents(shape, 1.0, theta + TAU * turn);
             let emf = shape.zero_sum(theta);
             currents.iter().zip(emf).map(|(i, e)| i * e).sum::<f64>()
         };
@@ -47,14 +46,7 @@ fn exact_share(shape: EmfShape, turn: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const SHAPES: [EmfShape; 3] = [
-        EmfShape::Sinusoidal,
-        EmfShape::Trapezoidal {
-            flat_top_deg: 120.0,
-        },
-        EmfShape::Trapezoidal { flat_top_deg: 97.0 },
-    ];
+    use crate::spec::emf_shape::SHAPES;
 
     #[test]
     fn the_share_of_a_sine_is_the_cosine() {

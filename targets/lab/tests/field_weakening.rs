@@ -65,7 +65,7 @@ const MOTORS: [&str; 5] = [
 /// Speeds over that at which the EMF takes the whole bus.
 const SPEEDS: [f64; 7] = [0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15];
 
-/// Torques over `demand`, in the direction of rotation, both ways, at each of the speeds up to `last`.
+/// Mean torque over the demanded one at each of the `speeds`, forward and backward; `share`: of the rated torque.
 fn curves(drive: &Prepared, share: f64, speeds: &[f64]) -> Vec<Vec<f64>> {
     let idle = hexagen_codegen::spec::Envelope::of(&drive.spec).idle_speed();
     let demand = share * drive.demand();

@@ -99,7 +99,7 @@ pub struct Stated {
 /// one of another basis.
 const LIKELY: [f64; 2] = [0.5, 1.5];
 
-/// A bus of so many times the stated one is no remedy: a value is wrong.
+/// Where a rating takes so many times the stated bus, one of its values is wrong, and not the bus.
 const ABSURD: f64 = 10.0;
 
 /// Which of `values` makes most of a voltage that is absurd beside the bus. In volt: the bus; `taken`: what the

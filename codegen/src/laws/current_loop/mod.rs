@@ -103,7 +103,7 @@ pub struct Front<'b> {
     pub emf_error: Option<[Expr<'b>; 2]>,
     /// Count of the residual watch, and its new value; with a `residual_timeout` only.
     pub residual_count: Option<(Memory<'b>, Expr<'b>)>,
-    /// Angle of the reference against the field; with field weakening only.
+    /// How far the reference is turned against the field; with field weakening only.
     pub weakened: Option<Weakened<'b>>,
     /// The folded words; with a held EMF only.
     pub held: Option<Held<'b>>,

@@ -4,7 +4,9 @@ use super::ran::Ran;
 use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_warnings};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_lab::closed_loop::{LimitOptions, LimitOutcome, SpeedLimit, percent, speed_limit};
+use hexagen_lab::closed_loop::{
+    LimitOptions, LimitOutcome, SpeedLimit, TOLERANCE, percent, speed_limit,
+};
 use hexagen_lab::engine::{Prepared, SelectedMotor};
 use hexagen_lab::envelope::{SpeedBounds, envelope_on};
 use hexagen_lab::text::significant;
@@ -18,7 +20,7 @@ pub struct Options {
     pub run: RunArguments,
 }
 
-/// A speed limit with its run. A torque is held while its mean is within 3 % of the demand.
+/// A speed limit with its run. A torque is held while its mean is within [`TOLERANCE`] of the demand.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     /// Motor, controller and model.
@@ -125,8 +127,8 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     let bounds = outcome.bounds.map_or_else(String::new, |bounds| {
         if bounds.envelope_rpm > 0.0 {
             format!(
-                "\nHeld: 97 % of it in the mean. The bus drives the whole current up to {} rpm; no profile within its peak gives the torque beyond {} rpm.",
-                bounds.envelope_rpm.floor(), bounds.any_profile_rpm.floor()
+                "\nHeld: its mean within {:.0} %. The bus drives the whole current up to {} rpm; no profile within its peak gives the torque beyond {} rpm.",
+                100.0 * TOLERANCE, bounds.envelope_rpm.floor(), bounds.any_profile_rpm.floor()
             )
         } else {
             "\nThe torque is beyond the drive at every speed.".to_owned()

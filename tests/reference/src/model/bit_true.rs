@@ -480,8 +480,7 @@ impl<W: Word> BitTrue<W> {
                 } else {
                     now
                 };
-                let ahead = if delayed { 2.0 } else { 1.0 };
-                let end = k.flux.both(angle.theta + angle.speed.step * ahead);
+                let end = k.flux.both(theta_ref);
                 let mean = |from: [W; 2], to: [W; 2]| {
                     both(|x| {
                         within(
