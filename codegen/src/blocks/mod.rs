@@ -9,6 +9,7 @@ mod common_mode;
 mod commutation;
 mod emf;
 mod fade;
+mod hall_learning;
 mod limit;
 mod measure;
 mod modulate;

@@ -2,6 +2,7 @@
 
 use super::Lowering;
 use super::commutation::CommutationRule;
+use super::hall_learning::{Edge, HallLearning, Placed};
 use super::measure::Hall;
 use super::number::round_half_up;
 use super::over_speed::OverSpeedWatch;
@@ -13,7 +14,7 @@ use crate::spec::{RotorSensing, Spec};
 use std::f64::consts::TAU;
 
 /// A sixth of a turn: floor(2^32 / 6).
-const SIXTH: i64 = 715_827_882;
+pub(super) const SIXTH: i64 = 715_827_882;
 /// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up like
 /// the sector starts, so that a sector's first and last angle lie in that sector.
 const SECTOR_ORIGIN: i64 = 357_913_942;
@@ -87,6 +88,7 @@ pub struct RotorWords<'b> {
     omega: Memory<'b>,
     rise: Option<Memory<'b>>,
     step_angle: Memory<'b>,
+    learning: Option<HallLearning<'b>>,
     over_speed: Option<OverSpeedWatch<'b>>,
 }
 
@@ -144,6 +146,8 @@ struct Edges<'b> {
     step_angle: Expr<'b>,
     /// Ticks since the last edge.
     age: Expr<'b>,
+    /// Where the sensor of the last edge stands, and how wide the sector is; where that is learnt.
+    placed: Option<Placed<'b>>,
 }
 
 /// Declares the direction word.
@@ -284,6 +288,7 @@ impl<'b> RotorWords<'b> {
                 turn_max,
                 "Electrical angle per control period, 2^32 a turn; 0 while unknown.",
             ),
+            learning: HallLearning::new(l),
             over_speed: OverSpeedWatch::new(l),
         }
     }
@@ -298,7 +303,8 @@ impl<'b> RotorWords<'b> {
         let meaning = "electrical angle, base one turn; speed per tick";
         l.format("omega", 32, 32, Rounding::Floor, meaning);
         let ages = self.time_since_edge(l, hall, hall_ticks);
-        let edges = self.measure_speed(l, hall, ages);
+        let last = self.learning.map(|_| last_of_sector(l, hall.sector));
+        let edges = self.measure_speed(l, hall, ages, last);
         let turning = self.keep_or_lose(l, &edges);
         let theta = interpolate(l, hall, &edges, &turning);
         Rotor {
@@ -332,12 +338,14 @@ impl<'b> RotorWords<'b> {
         [age_before, age]
     }
 
-    /// The speed, measured at an edge; the ages come from [`Self::time_since_edge`].
+    /// The speed, measured at an edge; the ages come from [`Self::time_since_edge`]. `last`: that of the sector, where
+    /// its place is learnt.
     fn measure_speed(
         &self,
         l: &Lowering<'b>,
         hall: &Hall<'b>,
         [age_before, age]: [Expr<'b>; 2],
+        last: Option<Expr<'b>>,
     ) -> Edges<'b> {
         let old = self.direction.read();
         let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
@@ -373,6 +381,19 @@ impl<'b> RotorWords<'b> {
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over().named("rate");
         let rise = rise.map(|old| (speed_rise(l, seen, [rev_seen, rate]), old));
+        let learning = self.learning.zip(rise).zip(last);
+        let learnt = learning.map(|((learning, (rise, _)), last)| {
+            let doc = "Greatest angle of a sector: 120 degrees.";
+            let most = l.number("sector_most", 2 * SIXTH, doc);
+            let edge = Edge {
+                forward: to_next,
+                again,
+                turned: rate.mul_limited(interval, most).named("turned"),
+                rise,
+                last,
+            };
+            (learning.at_edge(l, hall, &edge), last)
+        });
         let turn = turn_of_period(l, rate, rise.map(|(rise, _)| rise));
         named! {
             let known = edges_counted.is(2);
@@ -386,6 +407,7 @@ impl<'b> RotorWords<'b> {
             ("omega_now", omega_seen, omega),
             ("step_angle_now", step_angle_seen, step_angle),
         ]);
+        let placed = learnt.map(|(learnt, last)| learnt.keep(l, last));
         let rise = rise.map(|(seen, old)| l.b.join([("rise_now", seen, old)])[0]);
         if let Some((word, rise)) = self.rise.zip(rise) {
             word.set(rise);
@@ -403,6 +425,7 @@ impl<'b> RotorWords<'b> {
             rise,
             step_angle,
             age,
+            placed,
         }
     }
 
@@ -475,15 +498,17 @@ fn interpolate<'b>(
     );
     named! {
         let forward = seen.direction.is_above(0);
-        let last = last_of_sector(l, hall.sector);
+        let last = seen.placed.map_or_else(|| last_of_sector(l, hall.sector), |placed| placed.last);
     }
-    let progress = turning.omega.mul_limited(seen.age, last);
+    let width = seen.placed.map_or(last, |placed| placed.width);
+    let progress = turning.omega.mul_limited(seen.age, width);
     let progress = match seen.rise {
-        Some(rise) => risen(progress.named("mean_progress"), rise).min(last),
+        Some(rise) => risen(progress.named("mean_progress"), rise).min(width),
         None => progress,
     };
     let progress = progress.named("progress");
-    let inside = forward.choose(progress, last - progress);
+    let inside = forward.choose(progress, width - progress);
+    let inside = seen.placed.map_or(inside, |placed| placed.begin + inside);
     let inside = turning.tracking.choose(inside, centre_of_sector(l, last));
     let doc = "Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned();
     let exact = (Exact::Within(1), None);

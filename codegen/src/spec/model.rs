@@ -180,6 +180,11 @@ pub(crate) fn extreme_sectors(hall_angles: &[f64; 6]) -> [f64; 2] {
     })
 }
 
+/// Whether each Hall edge lies half a turn from the third one after it.
+pub(crate) fn are_opposite(hall_angles: &[f64; 6]) -> bool {
+    (0..3).all(|k| (hall_angles[k + 3] - hall_angles[k] - 180.0).abs() < 1e-6)
+}
+
 /// `hall_angles` of sensors in their places.
 pub const HALL_ANGLES: [f64; 6] = [-30.0, 30.0, 90.0, 150.0, 210.0, 270.0];
 
@@ -203,6 +208,11 @@ impl MotorSpec {
     /// Whether all Hall sensors are in their places.
     pub fn has_even_halls(&self) -> bool {
         self.hall_angles == HALL_ANGLES
+    }
+
+    /// Whether each Hall edge lies half a turn from the third one after it.
+    pub fn has_opposite_edges(&self) -> bool {
+        are_opposite(&self.hall_angles)
     }
 
     /// Width of the widest sector over 60 degrees.

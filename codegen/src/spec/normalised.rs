@@ -312,6 +312,7 @@ mod tests {
                     slew_rate: None,
                     residual_periods: None,
                     field_weakening: false,
+                    hall_learning: false,
                 },
             }),
         }

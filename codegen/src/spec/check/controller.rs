@@ -5,7 +5,7 @@ use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::{Collector, Location, catalogue};
 use crate::spec::ast::{Field, Section, Value};
-use crate::spec::controller::common::{HallEdges, Surroundings};
+use crate::spec::controller::common::{HALL_LEARNING, HallEdges, Surroundings, refuse};
 use crate::spec::controller::{self, KINDS, Kind};
 use crate::spec::reader::Reader;
 use crate::spec::schema;
@@ -70,12 +70,35 @@ pub(super) fn read(
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = (kind.read)(&reader, &surroundings, errors);
-    angle::refuse_halls(&reader, motor, &["hall_capture"], errors);
+    angle::refuse_halls(&reader, motor, &["hall_capture", HALL_LEARNING], errors);
     let sensing = match motor.rotor {
-        Some(RotorSource::Halls) => read_capture(&reader, inverter, errors),
+        Some(RotorSource::Halls) => {
+            let capture = read_capture(&reader, inverter, errors);
+            if (controller.as_ref()).is_some_and(|spec| spec.common().hall_learning) {
+                check_learning(&reader, motor, capture, errors);
+            }
+            capture
+        }
         Some(RotorSource::Angle) | None => motor.angle.map(RotorSensing::Angle),
     };
     (controller, sensing)
+}
+
+/// The places of Hall sensors are learnt from the times between their edges, of which opposite ones are a sensor's own.
+fn check_learning(
+    reader: &Reader,
+    motor: &Motor,
+    capture: Option<RotorSensing>,
+    errors: &mut Collector,
+) {
+    if capture == Some(RotorSensing::SampledHalls) {
+        let why = "at samples the time between two edges is known to a control period only";
+        refuse(reader, HALL_LEARNING, ["hall_capture", "sampled"], why, errors);
+    }
+    if !motor.has_opposite_edges() {
+        let why = "an edge must lie half a turn from the third one after it, which both are the same sensor's";
+        refuse(reader, HALL_LEARNING, ["hall_angles", "uneven"], why, errors);
+    }
 }
 
 /// Options of another kind than the chosen one.

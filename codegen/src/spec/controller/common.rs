@@ -113,6 +113,8 @@ pub struct LoopOptions {
     pub residual_periods: Option<u32>,
     /// Whether the reference turns against the field where the voltage ends.
     pub field_weakening: bool,
+    /// Whether the places of the Hall sensors are learnt.
+    pub hall_learning: bool,
 }
 
 /// The choice of controller.
@@ -238,7 +240,16 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .about("Timing of Hall edges"),
         |_| None,
     ),
+    Row::of(
+        rule::choice::<bool>(HALL_LEARNING, "on")
+            .preset("off")
+            .about("Places of the Hall sensors, learnt while the rotor turns steadily: how far the three stand out of place against each other, up to 15 electrical degrees; only with `emf: observer` and `hall_capture: timer`"),
+        |options| if_on(options.hall_learning),
+    ),
 ];
+
+/// Option of [`LOOP`].
+pub(crate) const HALL_LEARNING: &str = "hall_learning";
 
 /// Options of the controllers that limit a voltage.
 pub(crate) const LIMITED: &[Row<LoopOptions>] = &[Row::of(
@@ -433,6 +444,7 @@ pub(crate) fn read_common(
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
     let emf_in_use = traits.uses_emf.then_some(emf);
     let residual_periods = read_residual_timeout(reader, surroundings, emf_in_use, errors);
+    let hall_learning = read_hall_learning(reader, emf_in_use, errors);
     let field_weakening =
         traits.pulses_three_legs && read_field_weakening(reader, reference, errors);
 
@@ -465,6 +477,7 @@ pub(crate) fn read_common(
         slew_rate,
         residual_periods,
         field_weakening,
+        hall_learning,
     })
 }
 
@@ -561,17 +574,8 @@ fn read_residual_timeout(
     // A law that does not use the EMF refuses the option itself.
     let emf = emf?;
     if emf != EmfSource::Observer {
-        let other = format!("emf: {}", emf.word());
-        errors.push(catalogue::option_without_effect(
-            &timeout.part.location,
-            OPTION,
-            &timeout.part.given,
-            reader
-                .field("emf")
-                .map_or(reader.location(), |field| &field.location),
-            &other,
-            "only `emf: observer` tells how far the currents are from those that the motor's data predict",
-        ));
+        let why = "only `emf: observer` tells how far the currents are from those that the motor's data predict";
+        refuse(reader, OPTION, ["emf", emf.word()], why, errors);
         return None;
     }
     let t_s = drive.t_s?;
@@ -592,6 +596,20 @@ fn read_residual_timeout(
         return None;
     }
     Some(periods as u32)
+}
+
+/// Whether the places of the Hall sensors are learnt; what times the edges is checked with the sensors.
+fn read_hall_learning(reader: &Reader, emf: Option<EmfSource>, errors: &mut Collector) -> bool {
+    let is_on = reader.switch(errors, HALL_LEARNING) == Some(true);
+    // A law that does not use the EMF refuses the option itself.
+    let Some(emf) = emf else {
+        return false;
+    };
+    if is_on && emf != EmfSource::Observer {
+        let why = "only `emf: observer` follows the angle closely enough to gain by it";
+        refuse(reader, HALL_LEARNING, ["emf", emf.word()], why, errors);
+    }
+    is_on && emf == EmfSource::Observer
 }
 
 /// The filter coefficient of the estimate; 1 without an estimate, where the option has no effect.

@@ -10,6 +10,7 @@ mod bus_current;
 mod constants;
 mod emf;
 mod fade;
+mod hall_learning;
 mod law;
 mod limit;
 mod motion;
@@ -400,11 +401,12 @@ impl<W: Word> BitTrue<W> {
             sensor.follow(timing, theta, |turn| floor_weighted(turn, sensor.share));
             angle = rotor::sensed(k, timing, theta, sector);
         } else if self.variant.rotor {
-            self.state
-                .timing
-                .step(&self.clock, &event, direction_before, input(sample.ticks()));
-            angle = rotor::angle(&self.clock, k, &self.state, &event);
+            let ticks = input(sample.ticks());
+            let timing = &mut self.state.timing;
+            let is_whole = timing.step(&self.clock, &event, direction_before, ticks);
+            angle = rotor::angle(&self.clock, k, &self.state, &event, is_whole);
             self.state.speed = angle.speed;
+            self.state.learnt = angle.learnt;
         }
         let sector_eff = angle.sector_eff;
 

@@ -52,6 +52,9 @@ impl HallClock {
     }
 }
 
+/// Greatest rise of the speed at which the sensors' places are learnt.
+pub const STEADY_RISE: f64 = 0.0625;
+
 /// State of the edge timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HallTiming<W = f64> {
@@ -65,6 +68,8 @@ pub struct HallTiming<W = f64> {
     pub intervals: [W; 6],
     /// Their sum: ticks of one electrical turn.
     pub rev: W,
+    /// Edges in a row in one direction.
+    pub steady: u8,
     /// Edges in a row at which the turn was too short, or periods in a row with too large an angle.
     pub too_fast: W,
     /// With an angle sensor: the last sample's angle, 2^32 a turn, signed.
@@ -72,6 +77,9 @@ pub struct HallTiming<W = f64> {
     /// With an angle sensor: angle per period, 2^32 a turn, signed.
     pub step: W,
 }
+
+/// Edges in a row behind which all six intervals are measured.
+const WHOLE_TURN: u8 = 7;
 
 /// Edges in a row with too short a turn that are an over-speed.
 const TOO_FAST: f64 = 7.0;
@@ -84,6 +92,7 @@ impl<W: Word> Default for HallTiming<W> {
             edges: 0,
             intervals: [word(1.0); 6],
             rev: word(6.0),
+            steady: 0,
             too_fast: word(0.0),
             theta_prev: word(0.0),
             step: word(0.0),
@@ -136,7 +145,7 @@ impl<W: Word> HallTiming<W> {
     }
 
     /// One sample; `direction_before` is the direction before this sample's edge was evaluated.
-    /// Leaves the present age in `age_prev`.
+    /// Leaves the present age in `age_prev`. Returns whether this is an edge at which all six intervals are measured.
     #[inline]
     pub fn step(
         &mut self,
@@ -144,7 +153,7 @@ impl<W: Word> HallTiming<W> {
         event: &HallEvent,
         direction_before: W,
         hall_ticks: W,
-    ) {
+    ) -> bool {
         let age_before = self.age_prev + clock.ticks;
         let since = match (clock.timer, event.edge) {
             (true, true) if hall_ticks > (2.0 * clock.period).floor() => word(0.0),
@@ -154,6 +163,7 @@ impl<W: Word> HallTiming<W> {
             (false, false) => age_before,
         };
         let age = lesser(since, clock.age_max + 1.0);
+        let mut is_whole = false;
         if event.edge {
             let interval = within(age_before - age, 1.0, clock.age_max);
             let step_ok = event.forward || event.backward;
@@ -164,6 +174,12 @@ impl<W: Word> HallTiming<W> {
                 self.intervals.rotate_right(1);
                 self.intervals[0] = interval;
             }
+            is_whole = again && self.steady >= WHOLE_TURN - 1;
+            self.steady = if again {
+                (self.steady + 1).min(WHOLE_TURN)
+            } else {
+                1
+            };
             self.edges = if !step_ok {
                 0
             } else if again {
@@ -179,5 +195,6 @@ impl<W: Word> HallTiming<W> {
             self.edges = 0;
         }
         self.age_prev = age;
+        is_whole
     }
 }

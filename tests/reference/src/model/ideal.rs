@@ -4,13 +4,14 @@
 //! counts, Hall codes and timer ticks of the generated code, the outputs exact duties.
 
 mod emf;
+pub(super) mod hall_learning;
 mod law;
 mod limit;
 mod speed;
 mod vector;
 
 use super::angle::AngleSensor;
-use super::hall::{GREATEST_CHANGE, HallClock, RISE};
+use super::hall::{GREATEST_CHANGE, HallClock, RISE, STEADY_RISE};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Reach, Trace};
@@ -106,6 +107,8 @@ pub struct Ideal {
     slew_step: f64,
     /// c2 and c4 of the torque that a turned current keeps; with field weakening only.
     weakening_share: Option<[f64; 2]>,
+    /// Whether the places of the Hall sensors are learnt.
+    learns_halls: bool,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
     fades: [Option<[f64; 2]>; 2],
     /// Greatest bus current, drawn and returned, ampere.
@@ -176,6 +179,7 @@ impl Ideal {
             speed_step: spec.loop_options().acceleration_limit * inverter.t_s,
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
             weakening_share: spec.weakening_share(),
+            learns_halls: spec.loop_options().hall_learning == Switch::On,
             fades: [inverter.braking_fade, inverter.motoring_fade],
             bus_currents: [inverter.bus_current_limit, inverter.return_current_limit],
             dead_share: spec.dead_share(),
@@ -378,12 +382,12 @@ impl Ideal {
                 sensor.follow(timing, theta, |turn| turn * sensor.share);
                 self.sensed(theta, sector)
             } else if self.variant.rotor {
-                self.state.timing.step(
-                    &self.clock,
-                    &event,
-                    direction_before,
-                    f64::from(sample.ticks()),
-                );
+                let ticks = f64::from(sample.ticks());
+                let timing = &mut self.state.timing;
+                let is_whole = timing.step(&self.clock, &event, direction_before, ticks);
+                if event.edge && self.learns_halls {
+                    self.learn_edges(&event, is_whole);
+                }
                 self.angle(sector)
             } else {
                 (0.0, 0.0, sector)
@@ -697,6 +701,24 @@ impl Ideal {
         1.0 + RISE * change / timing.rev.max(self.clock.rev_min)
     }
 
+    /// Learns from an edge where the sensors stand; `is_whole`: behind a whole turn.
+    fn learn_edges(&mut self, event: &HallEvent, is_whole: bool) {
+        let is_steady = (self.ahead() - 1.0).abs() <= STEADY_RISE;
+        let turned = (is_whole && is_steady)
+            .then(|| self.electrical_speed() * self.state.timing.intervals[0]);
+        let width = self.sector(event.sector)[1];
+        let (learnt, sector_prev) = (self.state.learnt, self.state.sector_prev);
+        self.state.learnt = learnt.at_edge(event, sector_prev, turned, width);
+    }
+
+    /// Where a sector begins beyond its place, and its width, with all sensors in their places.
+    fn sector(&self, sector: usize) -> [f64; 2] {
+        match sector {
+            0 => [0.0, FRAC_PI_3],
+            _ => self.sectors[sector - 1],
+        }
+    }
+
     /// The same of a sensor's angle, as a word.
     fn sensed(&self, theta: f64, sector: usize) -> (f64, f64, usize) {
         let (theta, step_angle) = (theta * RADIANS, self.state.timing.step * RADIANS);
@@ -714,10 +736,11 @@ impl Ideal {
         let timing = &self.state.timing;
         let omega = self.electrical_speed();
         // Where the sector begins beyond its place, and where it ends, from where it begins.
-        let [beyond, width] = match sector {
-            0 => [0.0, FRAC_PI_3],
-            _ => self.sectors[sector - 1],
-        };
+        let [mut beyond, mut width] = self.sector(sector);
+        if self.learns_halls && timing.edges >= 2 {
+            beyond += self.state.learnt.begin;
+            width = self.state.learnt.width;
+        }
         let end = width * (1.0 - 1e-9);
         let ahead = self.ahead();
         let progress = ((omega * timing.age_prev).min(end) * ahead).min(end);

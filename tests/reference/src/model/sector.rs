@@ -58,6 +58,28 @@ impl HallEvent {
     }
 }
 
+/// The edge that a change of the sector crosses, 0 to 2: opposite ones are the same sensor's.
+#[inline]
+pub fn crossed_edge(event: &HallEvent, sector_prev: usize) -> usize {
+    let begins = if event.forward {
+        event.sector
+    } else {
+        sector_prev
+    };
+    // Before the first sector, the third edge.
+    (begins + 2) % 3
+}
+
+/// Edges at which the sector behind a crossed one begins and ends.
+#[inline]
+pub fn ends(crossed: usize, forward: bool) -> [usize; 2] {
+    if forward {
+        [crossed, (crossed + 1) % 3]
+    } else {
+        [(crossed + 2) % 3, crossed]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,6 +2,7 @@
 //! units.
 
 use super::hall::HallTiming;
+use super::ideal::hall_learning::PlacedEdges;
 use super::supervision::Supervisor;
 
 /// Signals of the last step. Pairs are phases a, b; phase c is minus their sum.
@@ -90,6 +91,8 @@ pub struct PhysicalState {
     pub net_next: [f64; 2],
     /// Error of the modelled EMF: q along the proportional current, d across it over sqrt(3), volt.
     pub emf_error: [f64; 2],
+    /// Where the Hall edges stand, as learnt.
+    pub(super) learnt: PlacedEdges,
     /// Angle of the reference against the field, electrical turns.
     pub weakening: f64,
     /// Periods in which the currents did not follow the voltages, less those in which they did.

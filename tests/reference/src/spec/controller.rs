@@ -47,6 +47,8 @@ pub struct LoopOptions {
     pub residual_periods: u32,
     /// Whether the reference turns against the field where the voltage ends.
     pub field_weakening: Switch,
+    /// Whether the places of the Hall sensors are learnt.
+    pub hall_learning: Switch,
 }
 
 impl LoopOptions {
@@ -104,6 +106,9 @@ macro_rules! options {
             /// Whether the reference turns against the field where the voltage ends.
             #[serde(default)]
             pub field_weakening: Switch,
+            /// Whether the places of the Hall sensors are learnt.
+            #[serde(default)]
+            pub hall_learning: Switch,
             $($(#[$doc])* pub $field: $kind,)*
         }
 
@@ -123,6 +128,7 @@ macro_rules! options {
                     slew_rate: self.slew_rate,
                     residual_periods: self.residual_periods,
                     field_weakening: self.field_weakening,
+                    hall_learning: self.hall_learning,
                 }
             }
         }

@@ -298,6 +298,7 @@ impl<W: Word> Constants<W> {
                 (Part::Rotor, by_edges),
                 (Part::Angle, rotor && !by_edges),
                 (Part::Rise, by_edges && clock.tells_rise),
+                (Part::HallLearning, options.hall_learning == Switch::On),
                 (
                     Part::OverSpeed,
                     inverter.over_speed_turn.is_some() || inverter.over_speed_step.is_some(),

@@ -8,6 +8,7 @@ pub enum Part {
     Rotor,
     Angle,
     Rise,
+    HallLearning,
     OverSpeed,
     Speed,
     Ramp,

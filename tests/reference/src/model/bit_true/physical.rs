@@ -7,6 +7,7 @@ use super::parts::Part;
 use super::state::State;
 use super::{BitTrue, Signals};
 use crate::exact::{both, pow2};
+use crate::model::ideal::hall_learning::PlacedEdges;
 use crate::model::trace::{Past, PhysicalState, Trace};
 use std::f64::consts::TAU;
 
@@ -77,6 +78,7 @@ impl State<f64> {
         [withheld_ampere, bus_ampere]: [f64; 2],
     ) -> PhysicalState {
         let volts = |words: [f64; 2]| words.map(|word| word * k.volt);
+        let radians = |word: f64| word * TAU * pow2(-32);
         let mut due = self.past.due;
         if !k.parts.has(Part::Hysteresis) {
             let memory = in_due(self.hysteresis);
@@ -100,6 +102,11 @@ impl State<f64> {
             net_prev: volts(self.net_prev),
             net_next: volts(self.net_next),
             emf_error: volts(self.emf_error),
+            learnt: PlacedEdges {
+                shifts: self.learnt.shifts.map(radians),
+                begin: radians(self.learnt.begin),
+                width: radians(self.learnt.width),
+            },
             weakening: self.weakening * pow2(-32),
             residual_count: self.residual_count,
             integral: volts(self.integral),

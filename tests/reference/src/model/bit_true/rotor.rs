@@ -1,6 +1,8 @@
 //! The rotor's angle from the timing of the Hall edges (section 4).
 
 use super::constants::{Constants, Scale};
+use super::hall_learning::{Learnt, Turn};
+use super::parts::Part;
 use super::sectors::{HALF_SIXTH, TWELFTH};
 use super::state::State;
 use crate::Error;
@@ -29,6 +31,8 @@ pub struct Angle<W: Word> {
     pub speed: Speed<W>,
     /// Sector with its advance.
     pub sector_eff: usize,
+    /// Where the edges stand.
+    pub learnt: Learnt<W>,
 }
 
 /// Rise of the speed from the last turn to the coming sector.
@@ -84,6 +88,7 @@ pub fn sensed<W: Word>(
             step: timing.step,
         },
         sector_eff: advanced(k, timing, (theta, timing.step), sector),
+        learnt: Learnt::default(),
     }
 }
 
@@ -102,17 +107,19 @@ fn advanced<W: Word>(
     to_index(floor(ahead * 6.0 * pow2(-32))) + 1
 }
 
-/// The angle after `state.timing` has followed the sample.
+/// The angle after `state.timing` has followed the sample; `is_whole`: at an edge behind a whole turn.
 #[inline]
 pub fn angle<W: Word>(
     clock: &HallClock,
     k: &Constants<W>,
     state: &State<W>,
     event: &HallEvent,
+    is_whole: bool,
 ) -> Angle<W> {
     let timing = &state.timing;
     let turning = timing.edges >= 2;
-    let mut speed = state.speed;
+    let (start, last) = (k.sectors.start[event.sector], k.sectors.last[event.sector]);
+    let (mut speed, mut learnt) = (state.speed, state.learnt);
     if !turning {
         (speed.omega, speed.step) = (word(0.0), word(0.0));
     }
@@ -127,21 +134,34 @@ pub fn angle<W: Word>(
             speed.rise = rise.at(timing, rate);
             turn = rise.risen(turn, speed.rise, word(HALF_SIXTH));
         }
+        if k.parts.has(Part::HallLearning) {
+            let turn = Turn {
+                is_whole,
+                interval: timing.intervals[0],
+                rate,
+                rise: speed.rise,
+            };
+            learnt = learnt.at_edge(event, state.sector_prev, &turn, last);
+        }
         if turning {
             (speed.omega, speed.step) = (rate, timing.direction * turn);
         }
     }
-    let (start, last) = (k.sectors.start[event.sector], k.sectors.last[event.sector]);
-    let mut progress = lesser(speed.omega * timing.age_prev, last);
+    let width = if k.parts.has(Part::HallLearning) {
+        learnt.width
+    } else {
+        word(last)
+    };
+    let mut progress = lesser(speed.omega * timing.age_prev, width);
     if let Some(rise) = &k.rise {
-        progress = rise.risen(progress, speed.rise, word(last));
+        progress = rise.risen(progress, speed.rise, width);
     }
     let in_sector = if !turning {
         word(k.sectors.half[event.sector])
     } else if timing.direction > 0.0 {
-        progress
+        learnt.begin + progress
     } else {
-        -progress + last
+        learnt.begin + (width - progress)
     };
     let theta = wrap32(in_sector + start);
     let sector_eff = advanced(k, timing, (theta, speed.step), event.sector);
@@ -149,5 +169,6 @@ pub fn angle<W: Word>(
         theta,
         speed,
         sector_eff,
+        learnt,
     }
 }

@@ -4,7 +4,7 @@ use crate::exact::pow2;
 use crate::spec::EVEN_EDGES;
 
 /// SIXTH: 60 degrees as an angle word, floor(2^32/6).
-const SIXTH: f64 = 715_827_882.0;
+pub const SIXTH: f64 = 715_827_882.0;
 /// Half of that.
 pub const HALF_SIXTH: f64 = 357_913_941.0;
 /// 30 degrees as an angle word, rounded up.

@@ -1,6 +1,7 @@
 //! The state of the bit-true model, and its words in the order of `semantics.md`.
 
 use super::constants::Constants;
+use super::hall_learning::Learnt;
 use super::parts::{Part, Parts};
 use super::rotor::Speed;
 use crate::exact::{Word, word};
@@ -20,6 +21,7 @@ pub struct State<W: Word> {
     pub sector_prev: usize,
     pub timing: HallTiming<W>,
     pub speed: Speed<W>,
+    pub learnt: Learnt<W>,
     pub speed_integral: W,
     pub speed_in_force: W,
     /// 1 once controlled, 2 once the speed is known.
@@ -212,6 +214,13 @@ macro_rules! for_each_word {
                 $show!("rise", $state.speed.rise);
             }
             $show!("step_angle", $state.speed.step);
+        }
+        if $parts.has(Part::HallLearning) {
+            $show!("shift_1", $state.learnt.shifts[0]);
+            $show!("shift_2", $state.learnt.shifts[1]);
+            $show!("sector_shift", $state.learnt.begin);
+            $show!("sector_width", $state.learnt.width);
+            $show!("steady_edges", $state.timing.steady);
         }
         if $parts.has(Part::Angle) {
             $show!("theta_prev", $state.timing.theta_prev);

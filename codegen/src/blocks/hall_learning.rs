@@ -1,0 +1,151 @@
+//! Places of the Hall sensors, learnt from the times between their edges (semantics page of predictive
+//! deadbeat, "Learning of the Hall sensors").
+//!
+//! While the rotor turns steadily, the part of a turn's time that a sector takes is its width. A sector that
+//! is wider than believed tells that the edge at its end stands farther on: the edge is moved by a quarter of
+//! the difference, and the other two back by half of that each, because the times tell how the edges stand to
+//! each other, not to the rotor.
+
+use super::Lowering;
+use super::measure::Hall;
+use super::rotor::SIXTH;
+use super::round_half_up;
+use super::speed_rise::GREATEST_RISE;
+use crate::ir::{Expr, Flag, Interval, Memory, Named as _, named, pick};
+
+/// Limit of the displacement of the first and of the second edge, and of what one sector tells: 15 degrees. The third
+/// is minus their sum.
+const MOST: i64 = SIXTH / 4;
+
+/// Edges in a row, in one direction, behind which all six intervals are measured.
+const WHOLE_TURN: i32 = 7;
+
+/// Greatest rise of the speed to the coming sector at which the rotor turns steadily: 1/16.
+const STEADY_RISE: f64 = 1.0 / 16.0;
+
+/// The learnt words, and what follows from them for the sector that the rotor is in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HallLearning<'b> {
+    /// Displacement of the edges at which sectors 1 and 4, and 2 and 5, begin.
+    shifts: [Memory<'b>; 2],
+    /// Displacement of the edge at which the sector begins.
+    begin: Memory<'b>,
+    /// Width of the sector.
+    width: Memory<'b>,
+    /// Edges in a row in one direction.
+    steady: Memory<'b>,
+}
+
+/// What is known at an edge.
+pub(super) struct Edge<'b> {
+    /// To the next sector, not to the previous one.
+    pub forward: Flag<'b>,
+    /// In the direction of the one before.
+    pub again: Flag<'b>,
+    /// Angle since the last edge, at the mean speed of the turn.
+    pub turned: Expr<'b>,
+    /// Rise of the speed to the coming sector.
+    pub rise: Expr<'b>,
+    /// Last angle of the sector, from its first, with all sensors in their places.
+    pub last: Expr<'b>,
+}
+
+/// The new words of an edge.
+pub(super) struct Learnt<'b>([(&'static str, Memory<'b>, Expr<'b>); 5]);
+
+/// Where the sector begins, beyond its place, and its last angle from there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed<'b> {
+    pub begin: Expr<'b>,
+    pub width: Expr<'b>,
+    /// The latter with all sensors in their places.
+    pub last: Expr<'b>,
+}
+
+impl<'b> HallLearning<'b> {
+    /// Declares the words; `None` without `hall_learning`.
+    pub fn new(l: &Lowering<'b>) -> Option<Self> {
+        if !l.spec.controller.common().hall_learning {
+            return None;
+        }
+        let shift = |name, sectors| {
+            let doc = format!(
+                "Learnt displacement of the Hall edges at which sectors {sectors} begin, 2^32 a turn."
+            );
+            l.b.memory(name, 0, Interval::symmetric(MOST), &doc)
+        };
+        let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
+        let begin = l.b.memory("sector_shift", 0, Interval::symmetric(2 * MOST), doc);
+        let doc = "Last angle of the sector, from where it begins, 2^32 a turn.";
+        // Sectors of sensors in their places are at most 100 degrees wide.
+        let widest = 2 * SIXTH + 3 * MOST;
+        let width = l.b.memory("sector_width", SIXTH as i32 - 1, Interval::new(0, widest), doc);
+        let doc = "Hall edges in a row in this direction, at most 7.";
+        Some(Self {
+            shifts: [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")],
+            begin,
+            width,
+            steady: l.b.memory("steady_edges", 0, Interval::new(0, WHOLE_TURN.into()), doc),
+        })
+    }
+
+    /// Learns from an edge; added to the open stage of edges.
+    pub fn at_edge(&self, l: &Lowering<'b>, hall: &Hall<'b>, edge: &Edge<'b>) -> Learnt<'b> {
+        let steady_edges = self.steady.read();
+        let [first, second] = self.shifts.map(Memory::read);
+        let limit = round_half_up(STEADY_RISE * 32_f64.exp2()) as i64;
+        debug_assert!(STEADY_RISE < GREATEST_RISE, "a limited rise is not steady");
+        let doc = "Greatest rise of the speed at which sectors tell where the sensors stand: 1/16.";
+        let steady_rise = l.number("steady_rise", limit, doc);
+        let doc = "Limit of a learnt displacement: 15 degrees.";
+        let most = l.number("shift_most", MOST, doc);
+        let doc = "Edge at which a sector begins: 1, 2 or 3; opposite edges are one sensor's.";
+        let edges = l.b.column("sector", "edge_of", vec![0, 1, 2, 3, 1, 2, 3], doc);
+        named! {
+            let crossed = edges.at(edge.forward.choose(hall.sector, hall.sector_prev.read()));
+            let is_first = crossed.is(1);
+            let is_second = crossed.is(2);
+            let is_whole = steady_edges.is_at_least(WHOLE_TURN - 1);
+            let steady_now = edge.again.choose((steady_edges + 1).min(WHOLE_TURN), 1);
+            let learns = edge.again & (is_whole & edge.rise.abs().is_at_most(steady_rise));
+            let wider = edge.forward.sign(edge.turned - self.width.read());
+            let move_on = learns.choose(wider.clamp(-most, most) >> 2, 0);
+            let move_back = -(move_on >> 1);
+        }
+        let learn = |name: &str, old: Expr<'b>, is_crossed: Flag<'b>| {
+            (old + is_crossed.choose(move_on, move_back)).clamp(-most, most).named(name)
+        };
+        let (one, two) = (
+            learn("shift_1_seen", first, is_first),
+            learn("shift_2_seen", second, is_second),
+        );
+        named! {
+            let three = -(one + two);
+            let at_edge = pick([is_first, is_second], [one, two, three]);
+            let behind = pick([is_first, is_second], [two, three, one]);
+            let before = pick([is_first, is_second], [three, one, two]);
+            let begin_seen = edge.forward.choose(at_edge, before);
+            let end_seen = edge.forward.choose(behind, at_edge);
+            let width_seen = (edge.last + (end_seen - begin_seen)).max(0);
+        }
+        Learnt([
+            ("shift_1_next", self.shifts[0], one),
+            ("shift_2_next", self.shifts[1], two),
+            ("sector_shift_next", self.begin, begin_seen),
+            ("sector_width_next", self.width, width_seen),
+            ("steady_edges_next", self.steady, steady_now),
+        ])
+    }
+}
+
+impl<'b> Learnt<'b> {
+    /// Joins the words of the open guarded stage, which keep their values without an edge.
+    pub fn keep(self, l: &Lowering<'b>, last: Expr<'b>) -> Placed<'b> {
+        let [_, _, begin, width, _] = self.0.map(|(name, word, seen)| {
+            let [next] = l.b.join([(name, seen, word.read())]);
+            word.set(next);
+            next
+        });
+        Placed { begin, width, last }
+    }
+}
