@@ -53,11 +53,12 @@ pub type Choice = Vec<usize>;
 pub type Meeting = ((usize, usize), (usize, usize));
 
 /// Fields that an angle sensor excludes.
-const OF_HALLS: [(&str, &str); 4] = [
+const OF_HALLS: [(&str, &str); 5] = [
     ("motor", "hall_codes"),
     ("motor", "hall_angles"),
     ("inverter", "hall_glitches"),
     ("controller", "hall_capture"),
+    ("controller", "hall_learning"),
 ];
 
 /// Placeholder of a voltage of 1.6 times the motor's bus.
@@ -139,6 +140,13 @@ const SHARED: &[Row] = &[
         &[
             ("sampled", &[("controller", "hall_capture", "\"sampled\"")]),
             ("timer", &[("controller", "hall_capture", "\"timer\"")]),
+            (
+                "learnt",
+                &[
+                    ("controller", "hall_capture", "\"timer\""),
+                    ("controller", "hall_learning", "\"on\""),
+                ],
+            ),
         ],
     ),
     (

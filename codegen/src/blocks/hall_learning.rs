@@ -17,6 +17,9 @@ use crate::ir::{Expr, Flag, Interval, Memory, Named as _, named, pick};
 /// is minus their sum.
 const MOST: i64 = SIXTH / 4;
 
+/// Greatest angle of a sector: 120 degrees.
+const WIDEST: i64 = 2 * SIXTH;
+
 /// Edges in a row, in one direction, behind which all six intervals are measured.
 const WHOLE_TURN: i32 = 7;
 
@@ -42,16 +45,18 @@ pub(super) struct Edge<'b> {
     pub forward: Flag<'b>,
     /// In the direction of the one before.
     pub again: Flag<'b>,
-    /// Angle since the last edge, at the mean speed of the turn.
-    pub turned: Expr<'b>,
+    /// Ticks since the last edge.
+    pub interval: Expr<'b>,
+    /// Angle per tick, mean of the turn.
+    pub rate: Expr<'b>,
     /// Rise of the speed to the coming sector.
     pub rise: Expr<'b>,
     /// Last angle of the sector, from its first, with all sensors in their places.
     pub last: Expr<'b>,
 }
 
-/// The new words of an edge.
-pub(super) struct Learnt<'b>([(&'static str, Memory<'b>, Expr<'b>); 5]);
+/// The new and the old words of an edge.
+pub(super) struct Learnt<'b>([(&'static str, Memory<'b>, [Expr<'b>; 2]); 5]);
 
 /// Where the sector begins, beyond its place, and its last angle from there.
 #[derive(Clone, Copy, Debug)]
@@ -77,9 +82,7 @@ impl<'b> HallLearning<'b> {
         let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
         let begin = l.b.memory("sector_shift", 0, Interval::symmetric(2 * MOST), doc);
         let doc = "Last angle of the sector, from where it begins, 2^32 a turn.";
-        // Sectors of sensors in their places are at most 100 degrees wide.
-        let widest = 2 * SIXTH + 3 * MOST;
-        let width = l.b.memory("sector_width", SIXTH as i32 - 1, Interval::new(0, widest), doc);
+        let width = l.b.memory("sector_width", SIXTH as i32 - 1, Interval::new(0, WIDEST), doc);
         let doc = "Hall edges in a row in this direction, at most 7.";
         Some(Self {
             shifts: [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")],
@@ -93,8 +96,11 @@ impl<'b> HallLearning<'b> {
     pub fn at_edge(&self, l: &Lowering<'b>, hall: &Hall<'b>, edge: &Edge<'b>) -> Learnt<'b> {
         let steady_edges = self.steady.read();
         let [first, second] = self.shifts.map(Memory::read);
+        let (begin, width) = (self.begin.read(), self.width.read());
+        let doc = "Greatest angle of a sector: 120 degrees.";
+        let widest = l.number("sector_most", WIDEST, doc);
         let limit = round_half_up(STEADY_RISE * 32_f64.exp2()) as i64;
-        debug_assert!(STEADY_RISE < GREATEST_RISE, "a limited rise is not steady");
+        const { assert!(STEADY_RISE < GREATEST_RISE, "a limited rise is not steady") };
         let doc = "Greatest rise of the speed at which sectors tell where the sensors stand: 1/16.";
         let steady_rise = l.number("steady_rise", limit, doc);
         let doc = "Limit of a learnt displacement: 15 degrees.";
@@ -108,7 +114,8 @@ impl<'b> HallLearning<'b> {
             let is_whole = steady_edges.is_at_least(WHOLE_TURN - 1);
             let steady_now = edge.again.choose((steady_edges + 1).min(WHOLE_TURN), 1);
             let learns = edge.again & (is_whole & edge.rise.abs().is_at_most(steady_rise));
-            let wider = edge.forward.sign(edge.turned - self.width.read());
+            let turned = edge.rate.mul_limited(edge.interval, widest);
+            let wider = edge.forward.sign((turned - width).named("wider_forward"));
             let move_on = learns.choose(wider.clamp(-most, most) >> 2, 0);
             let move_back = -(move_on >> 1);
         }
@@ -126,14 +133,14 @@ impl<'b> HallLearning<'b> {
             let before = pick([is_first, is_second], [three, one, two]);
             let begin_seen = edge.forward.choose(at_edge, before);
             let end_seen = edge.forward.choose(behind, at_edge);
-            let width_seen = (edge.last + (end_seen - begin_seen)).max(0);
+            let width_seen = (edge.last + (end_seen - begin_seen)).clamp(0, widest);
         }
         Learnt([
-            ("shift_1_next", self.shifts[0], one),
-            ("shift_2_next", self.shifts[1], two),
-            ("sector_shift_next", self.begin, begin_seen),
-            ("sector_width_next", self.width, width_seen),
-            ("steady_edges_next", self.steady, steady_now),
+            ("shift_1_next", self.shifts[0], [one, first]),
+            ("shift_2_next", self.shifts[1], [two, second]),
+            ("sector_shift_next", self.begin, [begin_seen, begin]),
+            ("sector_width_next", self.width, [width_seen, width]),
+            ("steady_edges_next", self.steady, [steady_now, steady_edges]),
         ])
     }
 }
@@ -141,8 +148,8 @@ impl<'b> HallLearning<'b> {
 impl<'b> Learnt<'b> {
     /// Joins the words of the open guarded stage, which keep their values without an edge.
     pub fn keep(self, l: &Lowering<'b>, last: Expr<'b>) -> Placed<'b> {
-        let [_, _, begin, width, _] = self.0.map(|(name, word, seen)| {
-            let [next] = l.b.join([(name, seen, word.read())]);
+        let [_, _, begin, width, _] = self.0.map(|(name, word, [seen, old])| {
+            let [next] = l.b.join([(name, seen, old)]);
             word.set(next);
             next
         });

@@ -383,12 +383,11 @@ impl<'b> RotorWords<'b> {
         let rise = rise.map(|old| (speed_rise(l, seen, [rev_seen, rate]), old));
         let learning = self.learning.zip(rise).zip(last);
         let learnt = learning.map(|((learning, (rise, _)), last)| {
-            let doc = "Greatest angle of a sector: 120 degrees.";
-            let most = l.number("sector_most", 2 * SIXTH, doc);
             let edge = Edge {
                 forward: to_next,
                 again,
-                turned: rate.mul_limited(interval, most).named("turned"),
+                interval,
+                rate,
                 rise,
                 last,
             };
@@ -508,7 +507,7 @@ fn interpolate<'b>(
     };
     let progress = progress.named("progress");
     let inside = forward.choose(progress, width - progress);
-    let inside = seen.placed.map_or(inside, |placed| placed.begin + inside);
+    let inside = seen.placed.map_or(inside, |placed| placed.begin.angle_add(inside));
     let inside = turning.tracking.choose(inside, centre_of_sector(l, last));
     let doc = "Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned();
     let exact = (Exact::Within(1), None);

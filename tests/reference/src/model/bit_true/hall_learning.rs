@@ -1,7 +1,7 @@
 //! Learning of the Hall sensors (section "Learning of the Hall sensors").
 
 use super::sectors::SIXTH;
-use crate::exact::{Word, both, either, floor_shift, greater, lesser, pow2, within, word};
+use crate::exact::{Word, both, either, floor_shift, lesser, pow2, within, word};
 use crate::model::hall::STEADY_RISE;
 use crate::model::sector::{HallEvent, crossed_edge, ends};
 
@@ -59,7 +59,7 @@ impl<W: Word> Learnt<W> {
         });
         let all = [shifts[0], shifts[1], -(shifts[0] + shifts[1])];
         let [begin, end] = ends(crossed, event.forward).map(|edge| all[edge]);
-        let width = greater(end - begin + last, 0.0);
+        let width = within(end - begin + last, 0.0, 2.0 * SIXTH);
         Self {
             shifts,
             begin,

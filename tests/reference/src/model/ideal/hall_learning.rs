@@ -49,7 +49,7 @@ impl PlacedEdges {
         Self {
             shifts,
             begin,
-            width: (width + end - begin).max(0.0),
+            width: (width + end - begin).clamp(0.0, 2.0 * FRAC_PI_3),
         }
     }
 }
