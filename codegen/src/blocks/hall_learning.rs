@@ -4,14 +4,17 @@
 //! While the rotor turns steadily, the part of a turn's time that a sector takes is its width. A sector that
 //! is wider than believed tells that the edge at its end stands farther on: the edge is moved by a quarter of
 //! the difference, and the other two back by half of that each, because the times tell how the edges stand to
-//! each other, not to the rotor.
+//! each other, not to the rotor. That is told by the EMF: with little current, which an inductance off its
+//! stated value could turn, the error of the modelled EMF across the rotor's shape is that of the angle.
 
 use super::Lowering;
 use super::measure::Hall;
 use super::rotor::SIXTH;
 use super::round_half_up;
 use super::speed_rise::GREATEST_RISE;
-use crate::ir::{Expr, Flag, Interval, Memory, Named as _, named, pick};
+use crate::diagnostics::engineering;
+use crate::ir::{Expr, Flag, Interval, Memory, Named as _, Phases, named, pick};
+use std::f64::consts::{PI, TAU};
 
 /// Limit of the displacement of the first and of the second edge, and of what one sector tells: 15 degrees. The third
 /// is minus their sum.
@@ -26,17 +29,41 @@ const WHOLE_TURN: i32 = 7;
 /// Greatest rise of the speed to the coming sector at which the rotor turns steadily: 1/16.
 const STEADY_RISE: f64 = 1.0 / 16.0;
 
+/// Angle by which all edges are moved at one of them: a 1024th of a sector, so 5 degrees take 14 turns.
+const OFFSET_STEP: i64 = SIXTH >> 10;
+
+/// Error of the angle that is left, rad: half a degree.
+const SMALL_ANGLE: f64 = PI / 360.0;
+
+/// Currents that turn the EMF's error little, over `max_current`.
+const SMALL_CURRENT: f64 = 0.1;
+
 /// The learnt words, and what follows from them for the sector that the rotor is in.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HallLearning<'b> {
     /// Displacement of the edges at which sectors 1 and 4, and 2 and 5, begin.
     shifts: [Memory<'b>; 2],
+    /// Displacement of all edges.
+    offset: Memory<'b>,
     /// Displacement of the edge at which the sector begins.
     begin: Memory<'b>,
     /// Width of the sector.
     width: Memory<'b>,
     /// Edges in a row in one direction.
     steady: Memory<'b>,
+}
+
+/// What all periods tell, for the edge that may be in one.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'b> {
+    /// Last angle of the sector, from its first, with all sensors in their places.
+    pub last: Expr<'b>,
+    /// Currents of phases a and b.
+    pub currents: Phases<'b>,
+    /// Error of the modelled EMF across the shape, in the last period.
+    pub across: Expr<'b>,
+    /// Angle per period up to now, signed.
+    pub step_angle: Expr<'b>,
 }
 
 /// What is known at an edge.
@@ -51,12 +78,10 @@ pub(super) struct Edge<'b> {
     pub rate: Expr<'b>,
     /// Rise of the speed to the coming sector.
     pub rise: Expr<'b>,
-    /// Last angle of the sector, from its first, with all sensors in their places.
-    pub last: Expr<'b>,
 }
 
 /// The new and the old words of an edge.
-pub(super) struct Learnt<'b>([(&'static str, Memory<'b>, [Expr<'b>; 2]); 5]);
+pub(super) struct Learnt<'b>([(&'static str, Memory<'b>, [Expr<'b>; 2]); 6]);
 
 /// Where the sector begins, beyond its place, and its last angle from there.
 #[derive(Clone, Copy, Debug)]
@@ -79,21 +104,71 @@ impl<'b> HallLearning<'b> {
             );
             l.b.memory(name, 0, Interval::symmetric(MOST), &doc)
         };
+        let doc = "Learnt displacement of all Hall edges, 2^32 a turn.";
+        let offset = l.b.memory("shift_all", 0, Interval::symmetric(MOST), doc);
         let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
-        let begin = l.b.memory("sector_shift", 0, Interval::symmetric(2 * MOST), doc);
+        let begin = l.b.memory("sector_shift", 0, Interval::symmetric(3 * MOST), doc);
         let doc = "Last angle of the sector, from where it begins, 2^32 a turn.";
         let width = l.b.memory("sector_width", SIXTH as i32 - 1, Interval::new(0, WIDEST), doc);
         let doc = "Hall edges in a row in this direction, at most 7.";
         Some(Self {
             shifts: [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")],
+            offset,
             begin,
             width,
             steady: l.b.memory("steady_edges", 0, Interval::new(0, WHOLE_TURN.into()), doc),
         })
     }
 
+    /// The displacement of all edges, from the error of the EMF; added to the open stage of edges.
+    fn learn_offset(
+        self,
+        l: &Lowering<'b>,
+        seen: &Seen<'b>,
+        [learns, forward]: [Flag<'b>; 2],
+    ) -> [Expr<'b>; 2] {
+        let (motor, old) = (&l.spec.motor, self.offset.read());
+        // Of an EMF that the angle leads by so much, words of voltage per angle of a period.
+        let across = SMALL_ANGLE * motor.emf_constant / f64::from(motor.pole_pairs) * 1.5
+            * motor.emf_constant
+            / (l.spec.torque_constant() * 3_f64.sqrt());
+        let per_angle = across * TAU / 32_f64.exp2() / l.spec.inverter.t_s;
+        let k_offset = l.scaled_coefficient(
+            "k_offset",
+            per_angle * l.scale.voltage(),
+            32,
+            [
+                "EMF across the shape where the angle is half a degree off, per angle of a period.",
+                &format!("{} per rad/s", engineering(across, "V")),
+            ],
+            ["2 pi/(2^32 Ts) g 2^f_v", "words of voltage per angle"],
+        );
+        let doc = "Greatest phase current at which the EMF tells the angle: a tenth of `max_current`.";
+        let most = l.ampere_word(SMALL_CURRENT * l.spec.inverter.max_current);
+        let small = l.current("i_small", most, doc);
+        let doc = "Angle by which all edges are moved at one of them: a 1024th of a sector.";
+        let step = l.number("shift_step", OFFSET_STEP, doc);
+        let limit = l.number("shift_most", MOST, "Limit of a learnt displacement: 15 degrees.");
+        let [a, b] = seen.currents.0;
+        named! {
+            let is_light = a.abs().is_at_most(small) & b.abs().is_at_most(small);
+            let is_off = seen.across.abs().is_above(k_offset * seen.step_angle.abs());
+            let lags = forward.sign(seen.across).is_above(0);
+            let moves = learns & (is_light & is_off);
+            let shift_of_all = lags.sign(step);
+            let shift_all_seen = (old + moves.choose(shift_of_all, 0)).clamp(-limit, limit);
+        }
+        [shift_all_seen, old]
+    }
+
     /// Learns from an edge; added to the open stage of edges.
-    pub fn at_edge(&self, l: &Lowering<'b>, hall: &Hall<'b>, edge: &Edge<'b>) -> Learnt<'b> {
+    pub fn at_edge(
+        self,
+        l: &Lowering<'b>,
+        hall: &Hall<'b>,
+        edge: &Edge<'b>,
+        seen: &Seen<'b>,
+    ) -> Learnt<'b> {
         let steady_edges = self.steady.read();
         let [first, second] = self.shifts.map(Memory::read);
         let (begin, width) = (self.begin.read(), self.width.read());
@@ -126,18 +201,21 @@ impl<'b> HallLearning<'b> {
             learn("shift_1_seen", first, is_first),
             learn("shift_2_seen", second, is_second),
         );
+        let [all, all_before] = self.learn_offset(l, seen, [learns, edge.forward]);
         named! {
             let three = -(one + two);
             let at_edge = pick([is_first, is_second], [one, two, three]);
             let behind = pick([is_first, is_second], [two, three, one]);
             let before = pick([is_first, is_second], [three, one, two]);
-            let begin_seen = edge.forward.choose(at_edge, before);
+            let begin_alone = edge.forward.choose(at_edge, before);
             let end_seen = edge.forward.choose(behind, at_edge);
-            let width_seen = (edge.last + (end_seen - begin_seen)).clamp(0, widest);
+            let width_seen = (seen.last + (end_seen - begin_alone)).clamp(0, widest);
+            let begin_seen = begin_alone + all;
         }
         Learnt([
             ("shift_1_next", self.shifts[0], [one, first]),
             ("shift_2_next", self.shifts[1], [two, second]),
+            ("shift_all_next", self.offset, [all, all_before]),
             ("sector_shift_next", self.begin, [begin_seen, begin]),
             ("sector_width_next", self.width, [width_seen, width]),
             ("steady_edges_next", self.steady, [steady_now, steady_edges]),
@@ -148,7 +226,7 @@ impl<'b> HallLearning<'b> {
 impl<'b> Learnt<'b> {
     /// Joins the words of the open guarded stage, which keep their values without an edge.
     pub fn keep(self, l: &Lowering<'b>, last: Expr<'b>) -> Placed<'b> {
-        let [_, _, begin, width, _] = self.0.map(|(name, word, [seen, old])| {
+        let [_, _, _, begin, width, _] = self.0.map(|(name, word, [seen, old])| {
             let [next] = l.b.join([(name, seen, old)]);
             word.set(next);
             next

@@ -2,8 +2,8 @@
 
 use super::Lowering;
 use super::commutation::CommutationRule;
-use super::hall_learning::{Edge, HallLearning, Placed};
-use super::measure::Hall;
+use super::hall_learning::{Edge, HallLearning, Placed, Seen};
+use super::measure::{Hall, Sample};
 use super::number::round_half_up;
 use super::over_speed::OverSpeedWatch;
 use super::speed_rise::{GREATEST_RISE, risen, speed_rise, tells_rise};
@@ -293,18 +293,24 @@ impl<'b> RotorWords<'b> {
         }
     }
 
-    /// Angle and speed from the Hall edges.
+    /// Angle and speed from the Hall edges; `across`: the word of the EMF's error across the shape, of an observer.
     pub fn track(
         &self,
         l: &Lowering<'b>,
         hall: &Hall<'b>,
-        hall_ticks: Option<Expr<'b>>,
+        sample: &Sample<'b>,
+        across: Option<Memory<'b>>,
     ) -> Rotor<'b> {
         let meaning = "electrical angle, base one turn; speed per tick";
         l.format("omega", 32, 32, Rounding::Floor, meaning);
-        let ages = self.time_since_edge(l, hall, hall_ticks);
-        let last = self.learning.map(|_| last_of_sector(l, hall.sector));
-        let edges = self.measure_speed(l, hall, ages, last);
+        let ages = self.time_since_edge(l, hall, sample.hall_ticks);
+        let seen = self.learning.zip(across).map(|(_, across)| Seen {
+            last: last_of_sector(l, hall.sector),
+            currents: sample.currents,
+            across: across.read(),
+            step_angle: self.step_angle.read(),
+        });
+        let edges = self.measure_speed(l, hall, ages, seen);
         let turning = self.keep_or_lose(l, &edges);
         let theta = interpolate(l, hall, &edges, &turning);
         Rotor {
@@ -338,14 +344,14 @@ impl<'b> RotorWords<'b> {
         [age_before, age]
     }
 
-    /// The speed, measured at an edge; the ages come from [`Self::time_since_edge`]. `last`: that of the sector, where
-    /// its place is learnt.
+    /// The speed, measured at an edge; the ages come from [`Self::time_since_edge`]. `observed`: where the
+    /// sensors' places are learnt.
     fn measure_speed(
         &self,
         l: &Lowering<'b>,
         hall: &Hall<'b>,
         [age_before, age]: [Expr<'b>; 2],
-        last: Option<Expr<'b>>,
+        observed: Option<Seen<'b>>,
     ) -> Edges<'b> {
         let old = self.direction.read();
         let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
@@ -381,17 +387,16 @@ impl<'b> RotorWords<'b> {
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over().named("rate");
         let rise = rise.map(|old| (speed_rise(l, seen, [rev_seen, rate]), old));
-        let learning = self.learning.zip(rise).zip(last);
-        let learnt = learning.map(|((learning, (rise, _)), last)| {
+        let learning = self.learning.zip(rise).zip(observed);
+        let learnt = learning.map(|((learning, (rise, _)), seen)| {
             let edge = Edge {
                 forward: to_next,
                 again,
                 interval,
                 rate,
                 rise,
-                last,
             };
-            (learning.at_edge(l, hall, &edge), last)
+            (learning.at_edge(l, hall, &edge, &seen), seen.last)
         });
         let turn = turn_of_period(l, rate, rise.map(|(rise, _)| rise));
         named! {

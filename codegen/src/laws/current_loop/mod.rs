@@ -321,7 +321,8 @@ impl<'b> CurrentLoop<'_, 'b> {
         };
         if let Some(rotor) = words.rotor {
             // With an angle, edges are evaluated in every period.
-            let rotor = rotor.track(l, &hall, tracked.sample.hall_ticks);
+            let across = words.emf_error.map(|[_, across]| across);
+            let rotor = rotor.track(l, &hall, &tracked.sample, across);
             hall.sector_prev.set(hall.sector);
             self.follow_rotor(&mut tracked, rotor);
         } else if let Some(direction) = words.direction {

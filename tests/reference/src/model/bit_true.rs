@@ -404,7 +404,7 @@ impl<W: Word> BitTrue<W> {
             let ticks = input(sample.ticks());
             let timing = &mut self.state.timing;
             let is_whole = timing.step(&self.clock, &event, direction_before, ticks);
-            angle = rotor::angle(&self.clock, k, &self.state, &event, is_whole);
+            angle = rotor::angle(&self.clock, k, &self.state, (&event, is_whole), i);
             self.state.speed = angle.speed;
             self.state.learnt = angle.learnt;
         }

@@ -4,7 +4,7 @@
 
 use super::sector::HallEvent;
 use crate::exact::{Word, greater, lesser, within, word};
-use crate::spec::{HallCapture, Inverter, Spec};
+use crate::spec::{HallCapture, Inverter, Motor, Spec};
 
 /// Constants of the timing, in ticks.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +54,16 @@ impl HallClock {
 
 /// Greatest rise of the speed at which the sensors' places are learnt.
 pub const STEADY_RISE: f64 = 0.0625;
+
+/// Currents at which the EMF tells the angle, over the greatest.
+pub const SMALL_CURRENT: f64 = 0.1;
+
+/// Error of the EMF across the shape, over sqrt(3), where the angle is half a degree off, volt per electrical rad/s.
+pub fn across_at_small_angle(motor: &Motor) -> f64 {
+    let linkage = motor.emf_constant / f64::from(motor.pole_pairs);
+    let length = 2.0 / 3.0 * motor.torque_constant / motor.emf_constant;
+    0.5_f64.to_radians() * linkage / (length * 3.0_f64.sqrt())
+}
 
 /// State of the edge timing.
 #[derive(Clone, Copy, Debug, PartialEq)]

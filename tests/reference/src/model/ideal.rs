@@ -11,7 +11,7 @@ mod speed;
 mod vector;
 
 use super::angle::AngleSensor;
-use super::hall::{GREATEST_CHANGE, HallClock, RISE, STEADY_RISE};
+use super::hall::{GREATEST_CHANGE, HallClock, RISE, SMALL_CURRENT, STEADY_RISE, across_at_small_angle};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Reach, Trace};
@@ -109,6 +109,8 @@ pub struct Ideal {
     weakening_share: Option<[f64; 2]>,
     /// Whether the places of the Hall sensors are learnt.
     learns_halls: bool,
+    /// Error of the EMF across the shape where the angle is off, volt per electrical rad/s.
+    across_at_small_angle: f64,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
     fades: [Option<[f64; 2]>; 2],
     /// Greatest bus current, drawn and returned, ampere.
@@ -179,6 +181,7 @@ impl Ideal {
             speed_step: spec.loop_options().acceleration_limit * inverter.t_s,
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
             weakening_share: spec.weakening_share(),
+            across_at_small_angle: across_at_small_angle(motor),
             learns_halls: spec.loop_options().hall_learning == Switch::On,
             fades: [inverter.braking_fade, inverter.motoring_fade],
             bus_currents: [inverter.bus_current_limit, inverter.return_current_limit],
@@ -386,7 +389,7 @@ impl Ideal {
                 let timing = &mut self.state.timing;
                 let is_whole = timing.step(&self.clock, &event, direction_before, ticks);
                 if event.edge && self.learns_halls {
-                    self.learn_edges(&event, is_whole);
+                    self.learn_edges(&event, is_whole, [i_a, i_b]);
                 }
                 self.angle(sector)
             } else {
@@ -702,10 +705,17 @@ impl Ideal {
     }
 
     /// Learns from an edge where the sensors stand; `is_whole`: behind a whole turn.
-    fn learn_edges(&mut self, event: &HallEvent, is_whole: bool) {
+    fn learn_edges(&mut self, event: &HallEvent, is_whole: bool, i: [f64; 2]) {
         let is_steady = (self.ahead() - 1.0).abs() <= STEADY_RISE;
-        let turned = (is_whole && is_steady)
-            .then(|| self.electrical_speed() * self.state.timing.intervals[0]);
+        let omega = self.electrical_speed();
+        let across = self.state.emf_error[1];
+        let least = self.across_at_small_angle * omega * self.clock.period / self.t_s;
+        let is_light = i.iter().all(|i| i.abs() <= SMALL_CURRENT * self.max_current);
+        let tells_angle = is_light && across.abs() > least;
+        let turned = (is_whole && is_steady).then(|| {
+            let turned = omega * self.state.timing.intervals[0];
+            (turned, tells_angle.then_some(across))
+        });
         let width = self.sector(event.sector)[1];
         let (learnt, sector_prev) = (self.state.learnt, self.state.sector_prev);
         self.state.learnt = learnt.at_edge(event, sector_prev, turned, width);

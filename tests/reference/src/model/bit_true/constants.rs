@@ -1,5 +1,6 @@
 //! Coefficients and constants, rounded from the specification (section "Words").
 
+use super::hall_learning::Offset;
 use super::parts::{Part, Parts};
 use super::rotor::Rise;
 use super::sectors::Sectors;
@@ -74,6 +75,8 @@ pub struct Constants<W> {
     pub k_ticks: Option<Coefficient<W>>,
     /// Where the intervals tell how the speed rises.
     pub rise: Option<Rise<W>>,
+    /// Where the places of the Hall sensors are learnt.
+    pub offset: Option<Offset<W>>,
     pub ratio_bits: u32,
     pub scale_bits: u32,
     pub emf_product: Shift,
@@ -391,6 +394,9 @@ impl<W: Word> Constants<W> {
             } else {
                 None
             },
+            offset: (options.hall_learning == Switch::On)
+                .then(|| Offset::new(spec, scale))
+                .transpose()?,
             rise: if by_edges && clock.tells_rise {
                 Some(Rise::new(scale, &clock)?)
             } else {

@@ -1,18 +1,25 @@
 //! Learning of the Hall sensors (section "Learning of the Hall sensors").
 
+use super::constants::Scale;
 use super::sectors::SIXTH;
-use crate::exact::{Word, both, either, floor_shift, lesser, pow2, within, word};
-use crate::model::hall::STEADY_RISE;
+use crate::exact::{Coefficient, Word, both, either, floor_shift, lesser, pow2, round_half_up, within, word};
+use crate::model::hall::{SMALL_CURRENT, STEADY_RISE, across_at_small_angle};
 use crate::model::sector::{HallEvent, crossed_edge, ends};
+use crate::{Error, Spec};
+use std::f64::consts::TAU;
 
 /// Limit of a learnt displacement.
 const MOST: f64 = 178_956_970.0;
+/// Angle by which all edges are moved at one of them.
+const STEP: f64 = 699_050.0;
 
 /// Learnt displacements of the edges, and what follows for the present sector; angle words.
 #[derive(Clone, Copy, Debug)]
 pub struct Learnt<W: Word> {
     /// `shift_1`, `shift_2`.
     pub shifts: [W; 2],
+    /// `shift_all`.
+    pub all: W,
     /// `sector_shift`.
     pub begin: W,
     /// `sector_width`.
@@ -23,6 +30,7 @@ impl<W: Word> Default for Learnt<W> {
     fn default() -> Self {
         Self {
             shifts: [word(0.0); 2],
+            all: word(0.0),
             begin: word(0.0),
             width: word(SIXTH - 1.0),
         }
@@ -38,6 +46,36 @@ pub struct Turn<W> {
     pub interval: W,
     pub rate: W,
     pub rise: W,
+    /// The currents are small, and the EMF's error across the shape is not.
+    pub tells_angle: bool,
+    /// That error.
+    pub across: W,
+}
+
+/// When the EMF tells the angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Offset<W> {
+    per_angle: Coefficient<W>,
+    small: f64,
+}
+
+impl<W: Word> Offset<W> {
+    pub fn new(spec: &Spec, scale: &Scale) -> Result<Self, Error> {
+        let small = SMALL_CURRENT * spec.inverter.max_current / scale.g * scale.two_i;
+        let volts = across_at_small_angle(&spec.motor) / scale.w * scale.two_v;
+        let speed = TAU / pow2(32) / spec.inverter.t_s;
+        Ok(Self {
+            per_angle: scale.coefficient("k_offset", volts * speed)?,
+            small: round_half_up(small),
+        })
+    }
+
+    /// Whether currents are small, and the error across the shape is not.
+    #[inline]
+    pub fn tells_angle(&self, [i_a, i_b]: [W; 2], across: W, step_angle: W) -> bool {
+        let is_light = i_a.abs() <= self.small && i_b.abs() <= self.small;
+        is_light && across.abs() > self.per_angle.mul(step_angle.abs())
+    }
 }
 
 impl<W: Word> Learnt<W> {
@@ -47,22 +85,28 @@ impl<W: Word> Learnt<W> {
         let crossed = crossed_edge(event, sector_prev);
         let limit = STEADY_RISE * pow2(32);
         let mut on = word(0.0);
+        let mut all = self.all;
         if turn.is_whole && turn.rise >= -limit && turn.rise <= limit {
             let wider = lesser(turn.rate * turn.interval, 2.0 * SIXTH) - self.width;
             let wider = either(event.forward, wider, -wider);
             on = floor_shift(within(wider, -MOST, MOST), 2);
+            if turn.tells_angle {
+                let lags = either(event.forward, turn.across, -turn.across) > 0.0;
+                all = within(all + if lags { STEP } else { -STEP }, -MOST, MOST);
+            }
         }
         let back = -floor_shift(on, 1);
         let shifts = both(|x| {
             let moved = either(crossed == x, on, back);
             within(self.shifts[x] + moved, -MOST, MOST)
         });
-        let all = [shifts[0], shifts[1], -(shifts[0] + shifts[1])];
-        let [begin, end] = ends(crossed, event.forward).map(|edge| all[edge]);
+        let each = [shifts[0], shifts[1], -(shifts[0] + shifts[1])];
+        let [begin, end] = ends(crossed, event.forward).map(|edge| each[edge]);
         let width = within(end - begin + last, 0.0, 2.0 * SIXTH);
         Self {
             shifts,
-            begin,
+            all,
+            begin: begin + all,
             width,
         }
     }

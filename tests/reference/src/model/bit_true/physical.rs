@@ -104,6 +104,7 @@ impl State<f64> {
             emf_error: volts(self.emf_error),
             learnt: PlacedEdges {
                 shifts: self.learnt.shifts.map(radians),
+                all: radians(self.learnt.all),
                 begin: radians(self.learnt.begin),
                 width: radians(self.learnt.width),
             },

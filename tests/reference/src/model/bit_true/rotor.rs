@@ -113,8 +113,8 @@ pub fn angle<W: Word>(
     clock: &HallClock,
     k: &Constants<W>,
     state: &State<W>,
-    event: &HallEvent,
-    is_whole: bool,
+    (event, is_whole): (&HallEvent, bool),
+    i: [W; 2],
 ) -> Angle<W> {
     let timing = &state.timing;
     let turning = timing.edges >= 2;
@@ -134,12 +134,15 @@ pub fn angle<W: Word>(
             speed.rise = rise.at(timing, rate);
             turn = rise.risen(turn, speed.rise, word(HALF_SIXTH));
         }
-        if k.parts.has(Part::HallLearning) {
+        if let Some(offset) = &k.offset {
+            let across = state.emf_error[1];
             let turn = Turn {
                 is_whole,
                 interval: timing.intervals[0],
                 rate,
                 rise: speed.rise,
+                tells_angle: offset.tells_angle(i, across, state.speed.step),
+                across,
             };
             learnt = learnt.at_edge(event, state.sector_prev, &turn, last);
         }

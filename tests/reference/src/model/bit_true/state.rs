@@ -218,6 +218,7 @@ macro_rules! for_each_word {
         if $parts.has(Part::HallLearning) {
             $show!("shift_1", $state.learnt.shifts[0]);
             $show!("shift_2", $state.learnt.shifts[1]);
+            $show!("shift_all", $state.learnt.all);
             $show!("sector_shift", $state.learnt.begin);
             $show!("sector_width", $state.learnt.width);
             $show!("steady_edges", $state.timing.steady);
