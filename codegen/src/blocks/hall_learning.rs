@@ -107,16 +107,24 @@ impl<'b> HallLearning<'b> {
         let doc = "Learnt displacement of all Hall edges, 2^32 a turn.";
         let offset = l.b.memory("shift_all", 0, Interval::symmetric(MOST), doc);
         let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
-        let begin = l.b.memory("sector_shift", 0, Interval::symmetric(3 * MOST), doc);
+        let begin =
+            l.b.memory("sector_shift", 0, Interval::symmetric(3 * MOST), doc);
         let doc = "Last angle of the sector, from where it begins, 2^32 a turn.";
-        let width = l.b.memory("sector_width", SIXTH as i32 - 1, Interval::new(0, WIDEST), doc);
+        let width = l.b.memory(
+            "sector_width",
+            SIXTH as i32 - 1,
+            Interval::new(0, WIDEST),
+            doc,
+        );
         let doc = "Hall edges in a row in this direction, at most 7.";
         Some(Self {
             shifts: [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")],
             offset,
             begin,
             width,
-            steady: l.b.memory("steady_edges", 0, Interval::new(0, WHOLE_TURN.into()), doc),
+            steady: l
+                .b
+                .memory("steady_edges", 0, Interval::new(0, WHOLE_TURN.into()), doc),
         })
     }
 
@@ -129,7 +137,8 @@ impl<'b> HallLearning<'b> {
     ) -> [Expr<'b>; 2] {
         let (motor, old) = (&l.spec.motor, self.offset.read());
         // Of an EMF that the angle leads by so much, words of voltage per angle of a period.
-        let across = SMALL_ANGLE * motor.emf_constant / f64::from(motor.pole_pairs) * 1.5
+        let across = SMALL_ANGLE * motor.emf_constant / f64::from(motor.pole_pairs)
+            * 1.5
             * motor.emf_constant
             / (l.spec.torque_constant() * 3_f64.sqrt());
         let per_angle = across * TAU / 32_f64.exp2() / l.spec.inverter.t_s;
@@ -143,12 +152,17 @@ impl<'b> HallLearning<'b> {
             ],
             ["2 pi/(2^32 Ts) g 2^f_v", "words of voltage per angle"],
         );
-        let doc = "Greatest phase current at which the EMF tells the angle: a tenth of `max_current`.";
+        let doc =
+            "Greatest phase current at which the EMF tells the angle: a tenth of `max_current`.";
         let most = l.ampere_word(SMALL_CURRENT * l.spec.inverter.max_current);
         let small = l.current("i_small", most, doc);
         let doc = "Angle by which all edges are moved at one of them: a 1024th of a sector.";
         let step = l.number("shift_step", OFFSET_STEP, doc);
-        let limit = l.number("shift_most", MOST, "Limit of a learnt displacement: 15 degrees.");
+        let limit = l.number(
+            "shift_most",
+            MOST,
+            "Limit of a learnt displacement: 15 degrees.",
+        );
         let [a, b] = seen.currents.0;
         named! {
             let is_light = a.abs().is_at_most(small) & b.abs().is_at_most(small);
@@ -181,7 +195,8 @@ impl<'b> HallLearning<'b> {
         let doc = "Limit of a learnt displacement: 15 degrees.";
         let most = l.number("shift_most", MOST, doc);
         let doc = "Edge at which a sector begins: 1, 2 or 3; opposite edges are one sensor's.";
-        let edges = l.b.column("sector", "edge_of", vec![0, 1, 2, 3, 1, 2, 3], doc);
+        let edges =
+            l.b.column("sector", "edge_of", vec![0, 1, 2, 3, 1, 2, 3], doc);
         named! {
             let crossed = edges.at(edge.forward.choose(hall.sector, hall.sector_prev.read()));
             let is_first = crossed.is(1);
@@ -195,7 +210,9 @@ impl<'b> HallLearning<'b> {
             let move_back = -(move_on >> 1);
         }
         let learn = |name: &str, old: Expr<'b>, is_crossed: Flag<'b>| {
-            (old + is_crossed.choose(move_on, move_back)).clamp(-most, most).named(name)
+            (old + is_crossed.choose(move_on, move_back))
+                .clamp(-most, most)
+                .named(name)
         };
         let (one, two) = (
             learn("shift_1_seen", first, is_first),

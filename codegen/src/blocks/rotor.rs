@@ -512,7 +512,9 @@ fn interpolate<'b>(
     };
     let progress = progress.named("progress");
     let inside = forward.choose(progress, width - progress);
-    let inside = seen.placed.map_or(inside, |placed| placed.begin.angle_add(inside));
+    let inside = seen
+        .placed
+        .map_or(inside, |placed| placed.begin.angle_add(inside));
     let inside = turning.tracking.choose(inside, centre_of_sector(l, last));
     let doc = "Electrical angle at which sectors 1 to 6 begin, 2^32 a turn.".to_owned();
     let exact = (Exact::Within(1), None);

@@ -228,6 +228,9 @@ fn trips(spec: &Spec) -> Vec<String> {
     });
     lines.extend(over_speed(spec));
     lines.extend(field_weakening(spec));
+    if spec.controller.common().hall_learning {
+        lines.push("While the rotor turns steadily the drive learns how the Hall sensors stand against each other, and at up to a tenth of `max_current` how all stand against the EMF: up to 15 electrical degrees, until `reset()`.".to_owned());
+    }
     if inverter.hall_glitches > 0 {
         lines.push(format!(
             "A disturbed Hall code is bridged for {} samples in a row, and trips it then.",

@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 28] = [
+const VARIANTS: [(&str, &str, Fields); 29] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",
@@ -115,6 +115,15 @@ const VARIANTS: [(&str, &str, Fields); 28] = [
         "pdcc.field-weakening",
         "pdcc:field_weakening=on",
         &[("inverter", "bus_clamp", "56 V")],
+    ),
+    (
+        "pdcc.hall-learning",
+        "pdcc:hall_learning=on",
+        &[(
+            "motor",
+            "hall_angles",
+            "[-26 deg, 30 deg, 90 deg, 154 deg, 210 deg, 270 deg]",
+        )],
     ),
     (
         "pdcc.over-speed",

@@ -93,11 +93,23 @@ fn check_learning(
 ) {
     if capture == Some(RotorSensing::SampledHalls) {
         let why = "at samples the time between two edges is known to a control period only";
-        refuse(reader, HALL_LEARNING, ["hall_capture", "sampled"], why, errors);
+        refuse(
+            reader,
+            HALL_LEARNING,
+            ["hall_capture", "sampled"],
+            why,
+            errors,
+        );
     }
     if !motor.has_opposite_edges() {
         let why = "an edge must lie half a turn from the third one after it, which both are the same sensor's";
-        refuse(reader, HALL_LEARNING, ["hall_angles", "uneven"], why, errors);
+        refuse(
+            reader,
+            HALL_LEARNING,
+            ["hall_angles", "uneven"],
+            why,
+            errors,
+        );
     }
 }
 

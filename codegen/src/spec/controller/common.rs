@@ -243,7 +243,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<bool>(HALL_LEARNING, "on")
             .preset("off")
-            .about("Places of the Hall sensors, learnt while the rotor turns steadily: how far the three stand out of place against each other, up to 15 electrical degrees; only with `emf: observer` and `hall_capture: timer`"),
+            .about("Places of the Hall sensors, learnt while the rotor turns steadily: how the three stand against each other, and at up to a tenth of `max_current` how all stand against the EMF, up to 15 electrical degrees, until `reset()`; only with `emf: observer` and `hall_capture: timer`"),
         |options| if_on(options.hall_learning),
     ),
 ];

@@ -11,7 +11,9 @@ mod speed;
 mod vector;
 
 use super::angle::AngleSensor;
-use super::hall::{GREATEST_CHANGE, HallClock, RISE, SMALL_CURRENT, STEADY_RISE, across_at_small_angle};
+use super::hall::{
+    GREATEST_CHANGE, HallClock, RISE, SMALL_CURRENT, STEADY_RISE, across_at_small_angle,
+};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Reach, Trace};
@@ -710,7 +712,9 @@ impl Ideal {
         let omega = self.electrical_speed();
         let across = self.state.emf_error[1];
         let least = self.across_at_small_angle * omega * self.clock.period / self.t_s;
-        let is_light = i.iter().all(|i| i.abs() <= SMALL_CURRENT * self.max_current);
+        let is_light = i
+            .iter()
+            .all(|i| i.abs() <= SMALL_CURRENT * self.max_current);
         let tells_angle = is_light && across.abs() > least;
         let turned = (is_whole && is_steady).then(|| {
             let turned = omega * self.state.timing.intervals[0];

@@ -242,6 +242,9 @@ fn in_every_variant() {
     let weakened = variants::weakened();
     assert!(weakened.len() > 20, "{}", weakened.len());
     variants.extend(weakened);
+    let learnt = variants::learnt();
+    assert!(learnt.len() > 20, "{}", learnt.len());
+    variants.extend(learnt);
     let mut overall = Worst::default();
     for (seed, variant) in (0..).zip(&variants) {
         let worst = follow(variant, seed);

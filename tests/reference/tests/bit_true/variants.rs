@@ -297,6 +297,22 @@ pub fn weakened() -> Vec<Variant> {
         .collect()
 }
 
+/// One in three of all variants that observe the EMF and whose Hall edges are timed, with learnt places of the sensors.
+pub fn learnt() -> Vec<Variant> {
+    let variants = all().into_iter().chain(others());
+    let timed = variants.filter(|variant| {
+        let observes = variant.spec.loop_options().emf == EmfSource::Observer;
+        observes && variant.toml.contains("hall_capture = \"timer\"")
+    });
+    timed
+        .step_by(3)
+        .map(|variant| {
+            let toml = format!("{}hall_learning = \"on\"\n", variant.toml);
+            variant_of(format!("{} learnt", variant.name), toml)
+        })
+        .collect()
+}
+
 fn variant_of(name: String, toml: String) -> Variant {
     let spec = Spec::from_toml(&toml).expect("a valid specification");
     Variant {
@@ -381,6 +397,10 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_motoring", shift(inverter.max_current * gain / 70.0)),
         ("j_in_force", f_v + 1),
         ("k_weakening", 31),
+        (
+            "k_offset",
+            shift(0.02 * linkage * TAU / 2f64.powi(32) * scale),
+        ),
         ("ratio", 24),
         ("scale", 30),
         ("shape", shift(peak)),

@@ -2,7 +2,9 @@
 
 use super::constants::Scale;
 use super::sectors::SIXTH;
-use crate::exact::{Coefficient, Word, both, either, floor_shift, lesser, pow2, round_half_up, within, word};
+use crate::exact::{
+    Coefficient, Word, both, either, floor_shift, lesser, pow2, round_half_up, within, word,
+};
 use crate::model::hall::{SMALL_CURRENT, STEADY_RISE, across_at_small_angle};
 use crate::model::sector::{HallEvent, crossed_edge, ends};
 use crate::{Error, Spec};
