@@ -142,8 +142,8 @@ impl<'b> HallLearning<'b> {
             * motor.emf_constant
             / (l.spec.torque_constant() * 3_f64.sqrt());
         let per_angle = across * TAU / 32_f64.exp2() / l.spec.inverter.t_s;
-        let k_offset = l.scaled_coefficient(
-            "k_offset",
+        let k_across = l.scaled_coefficient(
+            "k_across",
             per_angle * l.scale.voltage(),
             32,
             [
@@ -153,7 +153,7 @@ impl<'b> HallLearning<'b> {
             ["2 pi/(2^32 Ts) g 2^f_v", "words of voltage per angle"],
         );
         let doc =
-            "Greatest phase current at which the EMF tells the angle: a tenth of `max_current`.";
+            "Greatest phase current at which the EMF tells the angle, a tenth of `max_current`";
         let most = l.ampere_word(SMALL_CURRENT * l.spec.inverter.max_current);
         let small = l.current("i_small", most, doc);
         let doc = "Angle by which all edges are moved at one of them: a 1024th of a sector.";
@@ -166,7 +166,7 @@ impl<'b> HallLearning<'b> {
         let [a, b] = seen.currents.0;
         named! {
             let is_light = a.abs().is_at_most(small) & b.abs().is_at_most(small);
-            let is_off = seen.across.abs().is_above(k_offset * seen.step_angle.abs());
+            let is_off = seen.across.abs().is_above(k_across * seen.step_angle.abs());
             let lags = forward.sign(seen.across).is_above(0);
             let moves = learns & (is_light & is_off);
             let shift_of_all = lags.sign(step);

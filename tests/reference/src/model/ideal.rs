@@ -769,9 +769,9 @@ impl Ideal {
         };
         let in_sector = beyond + in_sector;
         let theta = sector as f64 * FRAC_PI_3 - FRAC_PI_3 - FRAC_PI_6 + in_sector;
-        let sector_eff = if timing.edges >= 2 && sector != 0 {
-            let ahead = ((in_sector + self.variant.options.advance * step_angle) / FRAC_PI_3)
-                .floor() as i64;
+        let advance = self.variant.options.advance;
+        let sector_eff = if advance > 0.0 && timing.edges >= 2 && sector != 0 {
+            let ahead = ((in_sector + advance * step_angle) / FRAC_PI_3).floor() as i64;
             (sector as i64 - 1 + ahead).rem_euclid(6) as usize + 1
         } else {
             sector

@@ -398,7 +398,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("j_in_force", f_v + 1),
         ("k_weakening", 31),
         (
-            "k_offset",
+            "k_across",
             shift(0.02 * linkage * TAU / 2f64.powi(32) * scale),
         ),
         ("ratio", 24),

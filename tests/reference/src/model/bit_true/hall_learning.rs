@@ -67,7 +67,7 @@ impl<W: Word> Offset<W> {
         let volts = across_at_small_angle(&spec.motor) / scale.w * scale.two_v;
         let speed = TAU / pow2(32) / spec.inverter.t_s;
         Ok(Self {
-            per_angle: scale.coefficient("k_offset", volts * speed)?,
+            per_angle: scale.coefficient("k_across", volts * speed)?,
             small: round_half_up(small),
         })
     }
