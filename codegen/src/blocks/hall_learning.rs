@@ -104,6 +104,7 @@ impl<'b> HallLearning<'b> {
             );
             l.b.memory(name, 0, Interval::symmetric(MOST), &doc)
         };
+        let shifts = [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")];
         let doc = "Learnt displacement of all Hall edges, 2^32 a turn.";
         let offset = l.b.memory("shift_all", 0, Interval::symmetric(MOST), doc);
         let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
@@ -118,7 +119,7 @@ impl<'b> HallLearning<'b> {
         );
         let doc = "Hall edges in a row in this direction, at most 7.";
         Some(Self {
-            shifts: [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")],
+            shifts,
             offset,
             begin,
             width,
