@@ -5,7 +5,7 @@ mod report_support;
 
 use hexagen_host::render::{self, html, terminal};
 use hexagen_lab::closed_loop::{Cause, FiguresOfMerit, Held, LimitOutcome, Side, SpeedLimit, Trip};
-use hexagen_lab::report::{results_blocks, results_page};
+use hexagen_lab::report::{results_blocks, results_page, variants_table};
 use hexagen_lab::results::{Expectation, Expected, ExpectedPoint, Results, Variant};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -43,6 +43,14 @@ fn every_section_is_there_and_linked() {
     // The EMF. Two of a commutation. Two speeds: six currents, trajectories and torques each, four spectra, one torque-speed
     // curve, two stable ranges; and two histograms of errors.
     assert_eq!(PAGE.matches("<div class=\"plot\"").count(), 30);
+}
+
+#[test]
+fn the_printed_table_of_variants_keeps_to_a_hundred_columns() {
+    let table = terminal::table(&variants_table(&DATA));
+    for line in table.lines() {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
 }
 
 #[test]
