@@ -1,7 +1,7 @@
 //! Whether and how well a drive will work: the verdict of `hexagen check` and of a report.
 //!
-//! The drive runs on the simulated motor from one start each: slowly, at rated speed, and there at the
-//! least bus voltage where one is stated.
+//! The drive runs on the simulated motor slowly, at rated speed, and there at the least bus voltage where
+//! one is stated.
 
 use crate::closed_loop::Trip;
 use crate::engine::Prepared;

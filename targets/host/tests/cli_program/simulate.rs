@@ -621,3 +621,13 @@ fn a_demand_beyond_the_envelope_is_a_warning() {
     );
     assert_eq!(warned("300"), "");
 }
+
+#[test]
+fn check_and_simulate_tell_the_same_ripple() {
+    let check = run(["check", PAPER, "--json"]).json();
+    let point = &check["points"][0];
+    let rpm = number(point, "rpm").to_string();
+    let simulated = run(["simulate", PAPER, "--rpm", &rpm, "--json"]).json();
+    let ripples = [point, &simulated].map(|of| number(of, "ripple_pp_pct"));
+    assert!((ripples[0] - ripples[1]).abs() < 1e-9, "{ripples:?}");
+}
