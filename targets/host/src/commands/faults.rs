@@ -3,9 +3,11 @@
 use super::ran::Ran;
 use crate::cli::{Bar, Failure, RunArguments, paragraph, print_json, print_table, print_text};
 use clap::Args;
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::Cause;
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, Totals, study};
+use hexagen_lab::plant::SHORT_RESISTANCE;
 use hexagen_lab::report::{Cell, Column, Label, Table, Tone};
 use hexagen_lab::text::significant;
 use serde::Serialize;
@@ -87,11 +89,13 @@ fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
     print_table(&table(study))?;
     print_text(&paragraph(&format!(
         "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
-         turning rotor.\nlargest: true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A.\n\
+         turning rotor.\nlargest: true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A. \
+         A short draws what a bus whose voltage holds drives through {} of switches and cables, until something ends it.\n\
          torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip. The \
          shaft is held at its speed.",
         significant(study.max_current_a, 3),
         significant(study.trip_current_a, 3),
+        engineering(SHORT_RESISTANCE, "ohm"),
     )))?;
     print_text("")?;
     print_text(&paragraph(&verdict(study, measures_bus)))

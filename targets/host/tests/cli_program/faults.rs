@@ -71,7 +71,8 @@ fn the_table_says_what_trips_by_what_and_what_follows() {
         "| current sensor a: gain halved         | ",
         "| ADC range ",
         "| nothing broken:",
-        "sound drives that trip: 0 of 13.",
+        "drives through 50 mohm of switches",
+        "sound drives that trip: 0 of",
         "Stall detection is off",
         "a comparator of the current on the timer's break input, a watchdog on the control interrupt",
     ] {
