@@ -227,13 +227,13 @@ impl Judgement {
         let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
         let what = if point.rpm < self.envelope_rpm {
             // The bus drives the whole current of the reference between its commutations.
-            return format!("{torque} % of the torque, though the bus has room");
+            return format!("{torque} % of the demanded torque, though the bus has room");
         } else if self.bus_current_limit_a.is_some() {
             "the bus and its current limit leave"
         } else {
             "the bus leaves"
         };
-        format!("{what} {torque} % of the torque")
+        format!("{what} {torque} % of the demanded torque")
     }
 }
 
@@ -246,7 +246,7 @@ impl Point {
             Some(torque) if torque > 0.0 => {
                 let torque = significant(torque, 3);
                 Some(format!(
-                    "on a bus of {bus} it makes {torque} % of its torque at rated speed"
+                    "on a bus of {bus} it makes {torque} % of the demanded torque at rated speed"
                 ))
             }
             _ => Some(format!("a bus of {bus} does not drive it at rated speed")),

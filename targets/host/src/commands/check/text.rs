@@ -184,7 +184,7 @@ fn of_torque(judgement: &Judgement) -> String {
     });
     let runs: Vec<String> = nominal.chain(lowest).collect();
     let demand = engineering(judgement.torque_nm, "Nm");
-    format!("of {demand}: {}", runs.join("; "))
+    format!("of the demand of {demand}: {}", runs.join("; "))
 }
 
 fn of_run(at: &str, point: &Point) -> String {
