@@ -264,3 +264,20 @@ fn page_is_written_whole_under_the_motors_name() {
         .collect();
     assert_eq!(left, ["report-trivedi-keshri-660w.html"]);
 }
+
+#[test]
+fn a_speed_at_which_the_drive_tripped_has_no_row_of_dashes() {
+    let mut data = DATA.clone();
+    let tripped = &mut data.variants[0].same_words[0];
+    let figures = FiguresOfMerit::default();
+    (tripped.fixed, tripped.ideal) = (figures, figures);
+    let errors = |page: &str| {
+        let table = page
+            .split("<table class=\"errors\">")
+            .nth(1)
+            .expect("is there");
+        let table = table.split("</table>").next().unwrap_or_default();
+        table.matches("<tr>").count()
+    };
+    assert_eq!(errors(&render(&data)) + 1, errors(&PAGE));
+}
