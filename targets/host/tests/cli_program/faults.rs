@@ -68,10 +68,10 @@ fn the_table_says_what_trips_by_what_and_what_follows() {
     for part in [
         "trivedi-keshri-660w, pi-pwm (fixed point): one thing breaks at a time",
         "| what breaks",
-        "| current sensor a: gain halved         | ",
+        "| current sensor a: gain halved ",
         "| ADC range ",
         "| nothing broken:",
-        "drives through 50 mohm of switches",
+        "50 mohm of switches and cables, until",
         "sound drives that trip: 0 of",
         "Stall detection is off",
         "a comparator of the current on the timer's break input, a watchdog on the control interrupt",
