@@ -113,7 +113,9 @@ fn bounds(drawn: &comfy_table::Table, columns: &[Column]) -> Vec<ColumnConstrain
     let column = |(place, of): (usize, &Column)| {
         let head = longest_word(drawn.header().into_iter(), place);
         if of.is_number {
-            let cells = drawn.row_iter().flat_map(|row| row.cell_iter().nth(place));
+            let cells = drawn
+                .row_iter()
+                .filter_map(|row| row.cell_iter().nth(place));
             let cells = cells.map(|cell| cell.content().chars().count());
             ColumnConstraint::Absolute(wide(cells.max().max(head)))
         } else {
