@@ -74,7 +74,8 @@ fn the_table_says_what_trips_by_what_and_what_follows() {
         "50 mohm of switches and cables, until",
         "sound drives that trip: 0 of",
         "Stall detection is off",
-        "a comparator of the current on the timer's break input, a watchdog on the control interrupt",
+        "a comparator of the current on the timer's break input",
+        "watchdog on the control interrupt",
     ] {
         assert!(
             said.stdout.contains(part),
