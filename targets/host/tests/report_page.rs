@@ -5,7 +5,7 @@ mod report_support;
 
 use hexagen_host::render::{self, html, terminal};
 use hexagen_lab::closed_loop::{Cause, FiguresOfMerit, Held, LimitOutcome, Side, SpeedLimit, Trip};
-use hexagen_lab::report::{results_blocks, results_page};
+use hexagen_lab::report::{results_blocks, results_page, variants_table};
 use hexagen_lab::results::{Expectation, Expected, ExpectedPoint, Results, Variant};
 use std::path::Path;
 use std::sync::LazyLock;
@@ -43,6 +43,14 @@ fn every_section_is_there_and_linked() {
     // The EMF. Two of a commutation. Two speeds: six currents, trajectories and torques each, four spectra, one torque-speed
     // curve, two stable ranges; and two histograms of errors.
     assert_eq!(PAGE.matches("<div class=\"plot\"").count(), 30);
+}
+
+#[test]
+fn the_printed_table_of_variants_keeps_to_a_hundred_columns() {
+    let table = terminal::table(&variants_table(&DATA));
+    for line in table.lines() {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
 }
 
 #[test]
@@ -87,7 +95,7 @@ fn the_result_table_in_the_terminal_says_what_the_page_says() {
         "| Variant ",
         "All 21 expected figures are met.",
         " 3.30 (3.30) |",
-        "| ideal float |",
+        "| ideal ",
     ] {
         assert!(text.contains(part), "no `{part}` in\n{text}");
     }
@@ -255,4 +263,21 @@ fn page_is_written_whole_under_the_motors_name() {
         .filter_map(|entry| Some(entry.ok()?.file_name()))
         .collect();
     assert_eq!(left, ["report-trivedi-keshri-660w.html"]);
+}
+
+#[test]
+fn a_speed_at_which_the_drive_tripped_has_no_row_of_dashes() {
+    let mut data = DATA.clone();
+    let tripped = &mut data.variants[0].same_words[0];
+    let figures = FiguresOfMerit::default();
+    (tripped.fixed, tripped.ideal) = (figures, figures);
+    let errors = |page: &str| {
+        let table = page
+            .split("<table class=\"errors\">")
+            .nth(1)
+            .expect("is there");
+        let table = table.split("</table>").next().unwrap_or_default();
+        table.matches("<tr>").count()
+    };
+    assert_eq!(errors(&render(&data)) + 1, errors(&PAGE));
 }

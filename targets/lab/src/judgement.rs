@@ -1,7 +1,7 @@
 //! Whether and how well a drive will work: the verdict of `hexagen check` and of a report.
 //!
-//! The drive runs on the simulated motor from one start each: slowly, at rated speed, and there at the
-//! least bus voltage where one is stated.
+//! The drive runs on the simulated motor slowly, at rated speed, and there at the least bus voltage where
+//! one is stated.
 
 use crate::closed_loop::Trip;
 use crate::engine::Prepared;
@@ -42,6 +42,8 @@ pub struct Point {
     pub torque_pct: Option<f64>,
     /// Ripple of the torque, peak to peak in percent of its mean.
     pub ripple_pp_pct: Option<f64>,
+    /// Mean current drawn from the bus, ampere; negative: returned.
+    pub bus_current_a: Option<f64>,
     /// Turn-ons per switch and second, mean of the six, hertz.
     pub switching_hz: Option<f64>,
     /// Trip.
@@ -152,6 +154,12 @@ impl Judgement {
         self.points.split_at(SPEEDS.len().min(self.points.len()))
     }
 
+    /// The run at rated speed on the nominal bus.
+    pub fn rated(&self) -> Option<&Point> {
+        let (nominal, _) = self.runs();
+        nominal.last()
+    }
+
     fn judge(&self, drive: &Prepared) -> (bool, String) {
         let (nominal, lowest) = self.runs();
         if let Some(trip) = nominal.iter().find_map(|point| point.tripped) {
@@ -227,13 +235,13 @@ impl Judgement {
         let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
         let what = if point.rpm < self.envelope_rpm {
             // The bus drives the whole current of the reference between its commutations.
-            return format!("{torque} % of the torque, though the bus has room");
+            return format!("{torque} % of the demand, though the bus has room");
         } else if self.bus_current_limit_a.is_some() {
             "the bus and its current limit leave"
         } else {
             "the bus leaves"
         };
-        format!("{what} {torque} % of the torque")
+        format!("{what} {torque} % of the demand")
     }
 }
 
@@ -246,7 +254,7 @@ impl Point {
             Some(torque) if torque > 0.0 => {
                 let torque = significant(torque, 3);
                 Some(format!(
-                    "on a bus of {bus} it makes {torque} % of its torque at rated speed"
+                    "on a bus of {bus} it makes {torque} % of the demand at rated speed"
                 ))
             }
             _ => Some(format!("a bus of {bus} does not drive it at rated speed")),
@@ -281,6 +289,7 @@ fn at_speed(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, PlantEr
         bus_v,
         torque_pct: torque_pct.filter(|_| measured.tripped.is_none()),
         ripple_pp_pct: figures.ripple_pp_pct,
+        bus_current_a: figures.bus_current_a,
         switching_hz: figures.switching_hz,
         tripped: measured.tripped,
     })

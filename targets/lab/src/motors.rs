@@ -110,7 +110,7 @@ impl RatedPoint {
         let omega = f64::from(speed_pct) / 100.0 * drive.spec.motor.rated_speed;
         let Measurement {
             figures, tripped, ..
-        } = drive.measure_once(omega, torque)?;
+        } = drive.measure_at(omega, torque)?;
         let mean = figures.mean_torque_nm.filter(|_| tripped.is_none());
         Ok(Self {
             speed_pct: speed_pct.unsigned_abs(),

@@ -10,49 +10,103 @@ use hexagen_codegen::ir::{Phase, Told, Value};
 use hexagen_codegen::spec::RotorSensing;
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
+use serde::Serialize;
 use std::io::{Read, Write};
+use std::ops::Range;
 
 /// Bits of a set-point's fraction.
 const FRACTION: f64 = 65_536.0;
 
-/// Rows of a log that were replayed, and what became of the drive.
+/// Columns of the drive's state.
+const STATE: [&str; 4] = ["period", "time_s", "mode", "fault"];
+
+const DUTIES: [&str; 3] = ["duty_a", "duty_b", "duty_c"];
+
+/// A log that was replayed, and what became of the drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replayed {
-    /// Periods.
-    pub periods: usize,
+    /// Names of the columns: state, duties, signals in SI units, every word of the step.
+    pub columns: Vec<String>,
+    /// The periods, with a cell per column.
+    pub periods: Vec<Vec<Cell>>,
+    /// Columns in SI units, the duties among them.
+    pub quantities: Range<usize>,
     /// The first period with a fault, from 0, and its fault.
     pub fault: Option<(usize, hexagen::Fault)>,
 }
 
-/// Replays a log from the drive's initial state, and writes one row of CSV per period.
+/// What a period has in a column.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Cell {
+    /// Nothing: the duty of a leg that is off, a word without control.
+    Absent,
+    /// A word, or the number of the period.
+    Word(i64),
+    /// A quantity.
+    Number(f64),
+    /// A mode or a fault.
+    Name(String),
+}
+
+impl Cell {
+    /// A quantity with so many decimals.
+    fn rounded(value: f64, decimals: i32) -> Self {
+        let steps = 10_f64.powi(decimals);
+        Self::Number((value * steps).round() / steps)
+    }
+
+    /// The quantity, if the cell holds one.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(value) => Some(*value),
+            _ => None,
+        }
+    }
+}
+
+impl Replayed {
+    /// A row of CSV per period.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
+        let mut writer = csv::Writer::from_writer(out);
+        writer.write_record(&self.columns)?;
+        for row in &self.periods {
+            writer.serialize(row)?;
+        }
+        Ok(writer.flush()?)
+    }
+}
+
+/// Replays a log from the drive's initial state.
 ///
 /// # Errors
-/// A row that the drive cannot take, by its line; a writer's error.
-pub fn replay(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Replayed, LogError> {
-    let mut writer = csv::Writer::from_writer(out);
+/// A row that the drive cannot take, by its line.
+pub fn replay(drive: &Prepared, log: impl Read) -> Result<Replayed, LogError> {
     let view = View::of(drive);
-    writer.write_record(view.header())?;
     let mut subject = drive.interpreted();
-    let mut replayed = Replayed {
-        periods: 0,
-        fault: None,
-    };
+    let mut periods = Vec::new();
+    let mut fault = None;
     for (period, row) in rows(log)?.enumerate() {
         let (row, line) = row?;
         let sample = sample(drive, &row).map_err(|what| line.error(&what))?;
         give(drive, &mut subject, &row).map_err(|what| line.error(&what))?;
         let legs = subject.step(&sample);
-        let row = view.row(period, &subject, legs);
-        writer.write_record(row)?;
-        let fault = subject.fault().map(|fault| (period, fault));
-        replayed.fault = replayed.fault.or(fault);
-        replayed.periods += 1;
+        periods.push(view.row(period, &subject, legs));
+        fault = fault.or(subject.fault().map(|fault| (period, fault)));
     }
-    writer.flush().map_err(csv::Error::from)?;
-    if replayed.periods == 0 {
+    if periods.is_empty() {
         return Err(LogError::empty());
     }
-    Ok(replayed)
+    Ok(Replayed {
+        columns: view.columns(),
+        periods,
+        quantities: view.quantities(),
+        fault,
+    })
 }
 
 /// The sample of a row.
@@ -164,44 +218,44 @@ impl<'g> View<'g> {
         }
     }
 
-    fn header(&self) -> Vec<&str> {
-        let fixed = [
-            "period", "time_s", "mode", "fault", "duty_a", "duty_b", "duty_c",
-        ];
+    fn columns(&self) -> Vec<String> {
         let signals = self.signals.iter().map(|(name, ..)| *name);
         let words = self.words.iter().map(|(name, _)| *name);
-        fixed.into_iter().chain(signals).chain(words).collect()
+        let all = STATE.into_iter().chain(DUTIES).chain(signals).chain(words);
+        all.map(str::to_owned).collect()
     }
 
-    fn row(&self, period: usize, drive: &Interpreted<'_>, legs: Legs) -> Vec<String> {
+    fn quantities(&self) -> Range<usize> {
+        STATE.len()..STATE.len() + DUTIES.len() + self.signals.len()
+    }
+
+    fn row(&self, period: usize, drive: &Interpreted<'_>, legs: Legs) -> Vec<Cell> {
         let status = drive.supervisor().status();
-        let fault = status
-            .fault
-            .map_or(String::new(), |fault| format!("{fault:?}"));
         let mut row = vec![
-            period.to_string(),
-            format!("{:.9}", period as f64 * self.t_s),
-            format!("{:?}", status.mode),
-            fault,
+            Cell::Word(period as i64),
+            Cell::rounded(period as f64 * self.t_s, 9),
+            Cell::Name(format!("{:?}", status.mode)),
+            status
+                .fault
+                .map_or(Cell::Absent, |fault| Cell::Name(format!("{fault:?}"))),
         ];
-        // An off leg has no duty.
         row.extend(legs.on().map(|on| {
-            on.map_or(String::new(), |on| {
-                format!("{:.6}", f64::from(on) / self.timer_period)
+            on.map_or(Cell::Absent, |on| {
+                Cell::rounded(f64::from(on) / self.timer_period, 6)
             })
         }));
-        // Without control the law tracks the rotor alone, and other words are empty.
+        // Without control the law tracks the rotor alone, and other words are absent.
         row.extend(self.signals.iter().map(|(_, value, unit)| {
-            drive.word(*value).map_or(String::new(), |word| {
+            drive.word(*value).map_or(Cell::Absent, |word| {
                 let of_one = f64::from(unit.factor) / f64::from(unit.shift).exp2() / FRACTION;
-                format!("{:.6}", of_one * word as f64)
+                Cell::rounded(of_one * word as f64, 6)
             })
         }));
-        row.extend(self.words.iter().map(|(_, value)| {
-            drive
-                .word(*value)
-                .map_or(String::new(), |word| word.to_string())
-        }));
+        row.extend(
+            self.words
+                .iter()
+                .map(|(_, value)| drive.word(*value).map_or(Cell::Absent, Cell::Word)),
+        );
         row
     }
 }

@@ -27,7 +27,7 @@ fn drive(motor: &str, variant: &str) -> Prepared {
 
 /// Mean torque over the demand and share of saturated periods, percent.
 fn measured(drive: &Prepared, omega_m: f64, torque: f64) -> (f64, f64) {
-    let run = drive.measure_once(omega_m, torque).expect("runs");
+    let run = drive.measure_at(omega_m, torque).expect("runs");
     assert_eq!(run.tripped, None);
     let figures = run.figures;
     (

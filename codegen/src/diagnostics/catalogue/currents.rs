@@ -276,13 +276,17 @@ pub fn sensing_window(
     period: &Part,
     [before, after]: [f64; 2],
     [most, duty]: [f64; 2],
-    f_pwm: f64,
+    f_pwm: Option<f64>,
 ) -> Diagnostic {
     let remedy = if before >= after {
         "shorten `settling_time`, `dead_time` or `sampling_lead`"
     } else {
         "shorten `aperture_time` or `conversion_time`, or raise `sampling_lead`"
     };
+    let slower = f_pwm.map_or(String::new(), |f_pwm| {
+        let f_pwm = engineering(at_most(f_pwm), "Hz");
+        format!(", or lower `f_pwm` to {f_pwm}")
+    });
     let at = parts
         .first()
         .map_or(&period.location, |part| &part.location);
@@ -290,12 +294,11 @@ pub fn sensing_window(
         Code::SensingWindow,
         at,
         format!(
-            "`current_sensing`: to be sampled a leg must be low for {} before the timer's turning point and {} behind it, of which either may be {} at most, so that a duty of {} can be read; {remedy}, or lower `f_pwm` to {}",
+            "`current_sensing`: to be sampled a leg must be low for {} before the timer's turning point and {} behind it, of which either may be {} at most, so that a duty of {} can be read; {remedy}{slower}",
             engineering(before, "s"),
             engineering(after, "s"),
             engineering(at_most(most), "s"),
             percent(duty),
-            engineering(at_most(f_pwm), "Hz"),
         ),
     );
     let parts: Vec<&Part> = parts.iter().chain([period]).collect();

@@ -5,10 +5,14 @@ use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::ast::Section;
 use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, CurrentSensing, SensedPhases};
+use std::ops::RangeInclusive;
 
 /// Least share of the period that a leg may be high: below it not even the zero voltage of centred pulses, half the
 /// period each, could be read.
 const LEAST_DUTY: f64 = 0.5;
+
+/// PWM frequencies that are worth a word, Hz: boards switch no faster, and below there is no smooth current.
+const F_PWM: RangeInclusive<f64> = 2e3..=100e3;
 
 /// Accepted: a window and a least low time that leave half of the PWM period, and legs of which no off one need be read.
 pub(super) fn check(
@@ -52,12 +56,13 @@ pub(super) fn check(
             weight(*other, *other_before).total_cmp(&weight(*one, *one_before))
         });
         let parts = parts.map(|(name, time, _)| reader.part(name, default(time)));
+        let f_pwm = ((1.0 - LEAST_DUTY) / 2.0 / needed).min(*F_PWM.end());
         errors.push(catalogue::sensing_window(
             &parts,
             period,
             [window.before, window.after],
             [half_low, LEAST_DUTY],
-            (1.0 - LEAST_DUTY) / 2.0 / needed,
+            Some(f_pwm).filter(|f_pwm| F_PWM.contains(f_pwm)),
         ));
     }
     let turns_off = controller.and_then(ControllerSpec::turns_off);

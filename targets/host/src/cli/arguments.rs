@@ -49,7 +49,7 @@ pub enum Command {
     Limit(limit::Options),
     /// Breaks one thing at a time, and says whether a controller trips and how large the current gets
     Faults(faults::Options),
-    /// Prints every word of a drive from a log of its samples and set-points
+    /// Computes every word of a drive again from a log of its samples and set-points
     Replay(replay::Options),
     /// Finds the Hall sensors' codes and edge angles from a log of the shorted motor turned by hand
     Halls(halls::Options),

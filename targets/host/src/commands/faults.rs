@@ -1,11 +1,13 @@
 //! `hexagen faults`: what a drive notices of what may break.
 
 use super::ran::Ran;
-use crate::cli::{Bar, Failure, RunArguments, print_json, print_table, print_text};
+use crate::cli::{Bar, Failure, RunArguments, paragraph, print_json, print_table, print_text};
 use clap::Args;
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::Cause;
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, Totals, study};
+use hexagen_lab::plant::SHORT_RESISTANCE;
 use hexagen_lab::report::{Cell, Column, Label, Table, Tone};
 use hexagen_lab::text::significant;
 use serde::Serialize;
@@ -77,22 +79,26 @@ fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
     let study = &outcome.study;
     let speeds = distinct(study.points.iter().map(|point| point.rpm));
     let torques = distinct(study.points.iter().map(|point| point.torque_nm.abs()));
-    print_text(&format!(
-        "{}: one thing breaks at a time, at {} rpm with {} Nm, motoring and braking\n",
+    print_text(&paragraph(&format!(
+        "{}: one thing breaks at a time, at {} rpm with {} Nm, motoring and braking",
         outcome.ran.name(),
         listed(&speeds, |rpm| format!("{rpm:.0}")),
         listed(&torques, |torque| significant(torque, 3)),
-    ))?;
+    )))?;
+    print_text("")?;
     print_table(&table(study))?;
-    print_text(&format!(
+    print_text(&paragraph(&format!(
         "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
-         turning rotor.\nlargest: true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A.\n\
+         turning rotor.\nlargest: true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A. \
+         A short draws what a bus whose voltage holds drives through {} of switches and cables, until something ends it.\n\
          torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip. The \
-         shaft is held at its speed.\n",
+         shaft is held at its speed.",
         significant(study.max_current_a, 3),
         significant(study.trip_current_a, 3),
-    ))?;
-    print_text(&verdict(study, measures_bus))
+        engineering(SHORT_RESISTANCE, "ohm"),
+    )))?;
+    print_text("")?;
+    print_text(&paragraph(&verdict(study, measures_bus)))
 }
 
 fn table(study: &FaultStudy) -> Table {
@@ -102,7 +108,6 @@ fn table(study: &FaultStudy) -> Table {
         Column::text("by"),
         Column::number("after", "ms"),
         Column::number("largest", "A"),
-        Column::number("over max_current", ""),
         Column::number("torque", "%"),
     ];
     let mut table = Table::new("", columns);
@@ -119,7 +124,7 @@ fn table(study: &FaultStudy) -> Table {
     table
 }
 
-fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 7] {
+fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 6] {
     let tripped = if row.seen == Seen::Untried {
         "untried".to_owned()
     } else {
@@ -134,7 +139,6 @@ fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 7] {
             .map_or_else(|| "-".to_owned(), |ms| format!("{ms:.1}"))
             .into(),
         significant(Some(row.largest_a).filter(|_| is_tried), 3).into(),
-        significant(Some(row.largest_over_max).filter(|_| is_tried), 2).into(),
         row.torque_pct.map_or_else(|| "-".to_owned(), range).into(),
     ]
 }
@@ -160,9 +164,9 @@ fn causes(row: &FaultRow) -> String {
                 .collect()
         }
     };
-    let causes = causes.join(", ");
+    let causes = causes.join(",\n");
     if row.is_false_alarm() {
-        format!("false alarm: {causes}")
+        format!("false alarm:\n{causes}")
     } else {
         causes
     }

@@ -1,12 +1,16 @@
 //! `hexagen replay`: every word of a drive from a log of what it was given.
 
 use crate::cli::{
-    DriveArguments, Failure, note, print_json, print_text, tell_warnings, write_file,
+    DriveArguments, Failure, note, paragraph, print_json, print_table, print_text, tell_warnings,
+    write_file,
 };
 use clap::Args;
-use hexagen_lab::replay::replay;
+use hexagen_codegen::diagnostics::engineering;
+use hexagen_lab::engine::Prepared;
+use hexagen_lab::replay::{Cell, Replayed, replay};
+use hexagen_lab::report::Table;
+use hexagen_lab::text::significant;
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -23,28 +27,49 @@ pub struct Options {
     /// precharge, reset, coast, brake, resume)
     #[arg(long, value_name = "FILE")]
     pub log: PathBuf,
-    /// Write the periods into a file in place of stdout
-    #[arg(long, value_name = "FILE")]
+    /// Print every word of every period, as CSV
+    #[arg(long)]
+    pub all: bool,
+    /// Write every word of every period into a file
+    #[arg(long, value_name = "FILE", conflicts_with = "all")]
     pub csv: Option<PathBuf>,
     /// Print one JSON object with the periods
-    #[arg(long, conflicts_with = "csv")]
+    #[arg(long, conflicts_with_all = ["csv", "all"])]
     pub json: bool,
 }
 
-/// A replayed log.
+/// A replayed log as data.
 #[derive(Debug, Serialize)]
-struct Replayed<'a> {
+struct Outcome<'a> {
     motor: &'a str,
     controller: &'a str,
     tripped: Option<Tripped>,
-    /// By column: numbers and words; absent values are null.
-    periods: Vec<BTreeMap<String, Value>>,
+    /// By column; absent values are null.
+    periods: Vec<BTreeMap<&'a str, &'a Cell>>,
 }
 
 #[derive(Debug, Serialize)]
 struct Tripped {
     period: usize,
     fault: String,
+}
+
+impl<'a> Outcome<'a> {
+    fn of(drive: &'a Prepared, replayed: &'a Replayed) -> Self {
+        let columns = replayed.columns.iter().map(String::as_str);
+        let periods = replayed.periods.iter();
+        Self {
+            motor: &drive.motor,
+            controller: &drive.variant,
+            tripped: replayed.fault.map(|(period, fault)| Tripped {
+                period,
+                fault: fault.to_string(),
+            }),
+            periods: periods
+                .map(|row| columns.clone().zip(row).collect())
+                .collect(),
+        }
+    }
 }
 
 /// Opens a log.
@@ -60,15 +85,6 @@ pub fn in_log(path: &Path, error: &dyn std::error::Error) -> Failure {
     Failure::Argument(format!("--log {}: {error}", path.display()))
 }
 
-/// A cell as data.
-fn value_of(text: String) -> Value {
-    match text.parse::<f64>() {
-        _ if text.is_empty() => Value::Null,
-        Ok(number) => number.into(),
-        Err(_) => text.into(),
-    }
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -76,39 +92,63 @@ fn value_of(text: String) -> Value {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = options.drive.prepare()?;
     tell_warnings(&drive);
-    let mut rows = Vec::new();
-    let replayed = replay(&drive, open_log(&options.log)?, &mut rows)
-        .map_err(|error| in_log(&options.log, &error))?;
+    let replayed =
+        replay(&drive, open_log(&options.log)?).map_err(|error| in_log(&options.log, &error))?;
     if options.json {
-        let periods = csv::Reader::from_reader(rows.as_slice()).into_deserialize();
-        let periods = periods.map(|row: csv::Result<BTreeMap<String, String>>| {
-            let cells = row?.into_iter();
-            Ok(cells
-                .map(|(column, text)| (column, value_of(text)))
-                .collect())
-        });
-        let periods: Result<_, csv::Error> = periods.collect();
-        return print_json(&Replayed {
-            motor: &drive.motor,
-            controller: &drive.variant,
-            tripped: replayed.fault.map(|(period, fault)| Tripped {
-                period,
-                fault: fault.to_string(),
-            }),
-            periods: periods.map_err(|error| in_log(&options.log, &error))?,
-        });
+        return print_json(&Outcome::of(&drive, &replayed));
     }
-    match &options.csv {
-        Some(csv) => write_file(csv, &rows)?,
-        None => print_text(String::from_utf8_lossy(&rows).trim_end())?,
+    let head = head(&drive, &replayed);
+    if options.all {
+        print_text(&String::from_utf8_lossy(&csv_of(&replayed, options)?))?;
+        note(&head);
+        return Ok(());
     }
+    if let Some(csv) = &options.csv {
+        write_file(csv, &csv_of(&replayed, options)?)?;
+    }
+    print_text(&paragraph(&head))?;
+    print_table(&table(&replayed))?;
+    if options.csv.is_some() {
+        return Ok(());
+    }
+    print_text("--all prints every word of every period, --csv FILE writes them.")
+}
+
+fn csv_of(replayed: &Replayed, options: &Options) -> Result<Vec<u8>, Failure> {
+    let mut rows = Vec::new();
+    let written = replayed.write_csv(&mut rows);
+    written.map_err(|error| in_log(&options.log, &error))?;
+    Ok(rows)
+}
+
+/// What was replayed, and whether the drive tripped.
+fn head(drive: &Prepared, replayed: &Replayed) -> String {
+    let t_s = drive.spec.inverter.t_s;
     let became = replayed.fault.map_or_else(
         || "no fault".to_owned(),
-        |(period, fault)| format!("tripped in period {period}: {fault}"),
+        |(period, fault)| {
+            let time = engineering(period as f64 * t_s, "s");
+            format!("tripped in period {period}, at {time}: {fault}")
+        },
     );
-    note(&format!(
-        "{}, {}: {} periods, {became}",
-        drive.motor, drive.variant, replayed.periods
-    ));
-    Ok(())
+    let periods = replayed.periods.len();
+    let time = engineering(periods as f64 * t_s, "s");
+    let Prepared { motor, variant, .. } = drive;
+    format!("{motor}, {variant}: {periods} periods, {time}; {became}")
+}
+
+/// The quantities over the log: in how many periods they exist, and their range and last value.
+fn table(replayed: &Replayed) -> Table {
+    let mut table = Table::listed(["quantity"], ["periods", "least", "greatest", "last"]);
+    for place in replayed.quantities.clone() {
+        let cells = replayed.periods.iter().map(|row| &row[place]);
+        let values: Vec<f64> = cells.filter_map(Cell::number).collect();
+        let least = values.iter().copied().reduce(f64::min);
+        let greatest = values.iter().copied().reduce(f64::max);
+        let [least, greatest, last] =
+            [least, greatest, values.last().copied()].map(|value| significant(value, 4));
+        let name = replayed.columns[place].clone();
+        table.row([name, values.len().to_string(), least, greatest, last]);
+    }
+    table
 }

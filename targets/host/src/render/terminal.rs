@@ -3,11 +3,14 @@
 
 use anstream::{AutoStream, ColorChoice};
 use comfy_table::presets::ASCII_MARKDOWN;
-use comfy_table::{CellAlignment, Color};
+use comfy_table::{CellAlignment, Color, ColumnConstraint, ContentArrangement, Row, Width};
 use hexagen_lab::report::{Block, Cell, Column, Group, Key, Label, Sign, Table, Tone, plain};
 
-/// Longest line in a column of text.
-const WIDEST: usize = 60;
+/// Columns of a line; a table that is wider breaks the texts in its cells.
+const COLUMNS: u16 = 100;
+
+/// Spaces beside a cell's text.
+const PADDING: u16 = 2;
 
 /// Blocks one after another; figures are represented by their captions.
 pub fn text(blocks: &[Block]) -> String {
@@ -76,6 +79,8 @@ fn typed(text: &str) -> String {
 pub fn table(table: &Table) -> String {
     let mut drawn = comfy_table::Table::new();
     drawn.load_style(ASCII_MARKDOWN);
+    drawn.set_content_arrangement(ContentArrangement::Dynamic);
+    drawn.set_width(COLUMNS);
     // Depends on NO_COLOR, CLICOLOR and stdout.
     match AutoStream::choice(&std::io::stdout()) {
         ColorChoice::Never => drawn.force_no_tty(),
@@ -83,19 +88,59 @@ pub fn table(table: &Table) -> String {
     };
     drawn.set_header(table.columns.iter().map(heading).collect::<Vec<_>>());
     for row in table.groups.iter().flat_map(rows) {
-        let cells = table.columns.iter().zip(&row);
-        drawn.add_row(
-            cells
-                .map(|(column, cell)| painted(column, cell))
-                .collect::<Vec<_>>(),
-        );
+        drawn.add_row(row.iter().map(painted));
     }
-    for (column, of) in drawn.column_iter_mut().zip(&table.columns) {
+    let bounds = bounds(&drawn, &table.columns);
+    for ((place, column), of) in drawn.column_iter_mut().enumerate().zip(&table.columns) {
+        if let Some(bound) = bounds.get(place) {
+            column.set_constraint(*bound);
+        }
         if of.is_number {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
     drawn.trim_fmt()
+}
+
+/// Bounds of the columns where the table is wider than a line: numbers stay whole below a heading that
+/// breaks, and of texts the words.
+fn bounds(drawn: &comfy_table::Table, columns: &[Column]) -> Vec<ColumnConstraint> {
+    let widths = drawn.column_max_content_widths();
+    let whole: u16 = widths.iter().map(|width| width + PADDING + 1).sum();
+    if whole < COLUMNS {
+        return Vec::new();
+    }
+    let column = |(place, of): (usize, &Column)| {
+        let head = longest_word(drawn.header().into_iter(), place);
+        if of.is_number {
+            let cells = drawn
+                .row_iter()
+                .filter_map(|row| row.cell_iter().nth(place));
+            let cells = cells.map(|cell| cell.content().chars().count());
+            ColumnConstraint::Absolute(wide(cells.max().max(head)))
+        } else {
+            let cells = longest_word(drawn.row_iter(), place);
+            ColumnConstraint::LowerBoundary(wide(cells.max(head)))
+        }
+    };
+    columns.iter().enumerate().map(column).collect()
+}
+
+/// The longest word of a column in rows.
+fn longest_word<'a>(rows: impl Iterator<Item = &'a Row>, place: usize) -> Option<usize> {
+    let words = rows.filter_map(|row| {
+        let text = row.cell_iter().nth(place)?.content();
+        text.split_whitespace()
+            .map(|word| word.chars().count())
+            .max()
+    });
+    words.max()
+}
+
+/// The width of a column for so many characters.
+fn wide(characters: Option<usize>) -> Width {
+    let characters = u16::try_from(characters.unwrap_or(0)).unwrap_or(COLUMNS);
+    Width::Fixed(characters + PADDING)
 }
 
 /// The name of a column below that of its group; variants break after their commas.
@@ -140,16 +185,11 @@ fn spread(row: &[Cell]) -> Vec<Cell> {
 
 /// The cell's text on the ground of its tone, in the 256 colours of terminals; pale ones bear dark
 /// ink.
-fn painted(column: &Column, cell: &Cell) -> comfy_table::Cell {
+fn painted(cell: &Cell) -> comfy_table::Cell {
     let mut text = typed(&cell.text);
     if !cell.detail.is_empty() && !cell.detail.starts_with('\n') {
         text = format!("{text} ({})", typed(&cell.detail));
     }
-    let text = if column.is_number {
-        text
-    } else {
-        wrapped(&text)
-    };
     let drawn = comfy_table::Cell::new(text);
     let (ground, ink) = match cell.tone {
         Tone::None | Tone::Good | Tone::Missed | Tone::Muted => return drawn,
@@ -159,25 +199,6 @@ fn painted(column: &Column, cell: &Cell) -> comfy_table::Cell {
         Tone::Broken => (124, 231),
     };
     drawn.bg(Color::AnsiValue(ground)).fg(Color::AnsiValue(ink))
-}
-
-/// A text with its lines broken between words.
-fn wrapped(text: &str) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    for line in text.split('\n') {
-        let mut words = line.split(' ');
-        let mut last = words.next().unwrap_or_default().to_owned();
-        for word in words {
-            if last.chars().count() + 1 + word.chars().count() > WIDEST {
-                lines.push(std::mem::take(&mut last));
-                word.clone_into(&mut last);
-            } else {
-                last = format!("{last} {word}");
-            }
-        }
-        lines.push(last);
-    }
-    lines.join("\n")
 }
 
 #[cfg(test)]
@@ -217,12 +238,20 @@ mod tests {
     }
 
     #[test]
-    fn long_texts_break_between_words() {
-        let text = wrapped(&"word ".repeat(30));
-        assert!(text.lines().count() > 1);
+    fn a_wide_table_breaks_its_texts_between_words() {
+        let columns = [
+            Column::text("Drive"),
+            Column::number("Number of trips", "of all"),
+        ];
+        let mut wide = Table::new("", columns);
+        wide.row([Cell::from("word ".repeat(30)), "123456".into()]);
+        let found = table(&wide);
         assert!(
-            text.lines().all(|line| line.chars().count() <= WIDEST),
-            "{text}"
+            found.lines().all(|line| line.chars().count() <= 100),
+            "{found}"
         );
+        let words = found.split([' ', '|']).filter(|word| *word == "word");
+        assert_eq!(words.count(), 30, "{found}");
+        assert!(found.contains(" 123456 |"), "{found}");
     }
 }

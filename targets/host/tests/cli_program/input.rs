@@ -303,23 +303,64 @@ fn options_of_the_report_stand_before_no_command() {
 }
 
 #[test]
-fn texts_and_replayed_periods_are_data_too() {
+fn emitted_texts_are_data_too() {
     let texts = run(["generate", PAPER, "--emit", "c99", "--json"]).json();
     let files = texts["files"].as_array().expect("files");
     assert_eq!(files.len(), 4);
     let has_text = |file: &Value| file["text"].as_str().is_some_and(|text| text.len() > 1000);
     assert!(files.iter().all(has_text));
+}
+
+/// A log of three periods, the last with a count at the end of its range.
+fn log_of_three_periods() -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("log.csv");
-    let row = "2048,2048,5,100\n";
-    fs::write(&log, format!("adc_1,adc_2,hall,ticks\n{}", row.repeat(3))).expect("is written");
-    let log = log.to_str().expect("a path");
-    let replayed = run(["replay", PAPER, "--log", log, "--json"]).json();
+    let rows = "2048,2048,5,100\n2048,2048,5,100\n4095,2048,5,100\n";
+    fs::write(&log, format!("adc_1,adc_2,hall,ticks\n{rows}")).expect("is written");
+    let path = log.to_str().expect("a path").to_owned();
+    (folder, path)
+}
+
+#[test]
+fn replayed_periods_are_data() {
+    let (_folder, log) = log_of_three_periods();
+    let replayed = run(["replay", PAPER, "--log", &log, "--json"]).json();
     let periods = replayed["periods"].as_array().expect("periods");
     assert_eq!(periods.len(), 3);
-    assert!(replayed["tripped"].is_null());
+    assert_eq!(replayed["tripped"]["period"], 2);
     let numbers = periods[0].as_object().expect("columns").values();
     assert!(numbers.filter(|value| value.is_number()).count() > 10);
+    assert_eq!(
+        (periods[1]["period"].as_u64(), &periods[1]["duty_a"]),
+        (Some(1), &Value::Null)
+    );
+}
+
+#[test]
+fn a_replay_is_told_in_a_few_lines_unless_all_is_asked_for() {
+    let (folder, log) = log_of_three_periods();
+    let told = run(["replay", PAPER, "--log", &log]).stdout;
+    assert!(
+        told.contains(": 3 periods, ") && told.contains("; tripped in period 2, at "),
+        "{told}"
+    );
+    assert!(
+        told.contains("| i_a_ampere |") && told.lines().count() < 16,
+        "{told}"
+    );
+    let all = run(["replay", PAPER, "--log", &log, "--all"]);
+    assert_eq!(all.stdout.lines().count(), 4, "{}", all.stdout);
+    assert!(
+        all.stdout.starts_with("period,time_s,mode,fault,duty_a,"),
+        "{}",
+        all.stdout
+    );
+    assert!(all.stderr.contains("tripped in period 2"), "{}", all.stderr);
+    let csv = folder.path().join("words.csv");
+    let csv = csv.to_str().expect("a path");
+    let told = run(["replay", PAPER, "--log", &log, "--csv", csv]).stdout;
+    assert!(told.contains("tripped in period 2"), "{told}");
+    assert_eq!(fs::read_to_string(csv).expect("is written"), all.stdout);
 }
 
 #[test]

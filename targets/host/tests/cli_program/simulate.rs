@@ -6,7 +6,7 @@ use hexagen_lab::engine::{MotorSource, plant_of, prepare};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
-const MERITS: [&str; 15] = [
+const MERITS: [&str; 16] = [
     "mean_torque_nm",
     "ripple_pp_pct",
     "ripple_rms_pct",
@@ -18,6 +18,7 @@ const MERITS: [&str; 15] = [
     "i13_pct",
     "thd_pct",
     "current_rms_a",
+    "bus_current_a",
     "tracking_rms_a",
     "commutation_us",
     "switching_hz",
@@ -620,4 +621,33 @@ fn a_demand_beyond_the_envelope_is_a_warning() {
         "{fast}"
     );
     assert_eq!(warned("300"), "");
+}
+
+#[test]
+fn check_and_simulate_tell_the_same_ripple() {
+    let check = run(["check", PAPER, "--json"]).json();
+    let point = &check["points"][0];
+    let rpm = number(point, "rpm").to_string();
+    let simulated = run(["simulate", PAPER, "--rpm", &rpm, "--json"]).json();
+    let ripples = [point, &simulated].map(|of| number(of, "ripple_pp_pct"));
+    assert!((ripples[0] - ripples[1]).abs() < 1e-9, "{ripples:?}");
+}
+
+#[test]
+fn the_bus_gives_the_power_of_shaft_and_windings() {
+    let motor = MotorSource::of_library(PAPER).expect("is in the library");
+    let spec = prepare(&motor, None).expect("generates").spec;
+    for rpm in ["400", "2000"] {
+        let run = run(["simulate", PAPER, "--rpm", rpm, "--json"]).json();
+        let omega_m = number(&run, "rpm") * TAU / 60.0;
+        let shaft = number(&run, "mean_torque_nm") * omega_m;
+        let copper = 3.0 * spec.motor.resistance * number(&run, "current_rms_a").powi(2);
+        let bus = spec.inverter.v_bus * number(&run, "bus_current_a");
+        assert!(
+            (bus / (shaft + copper) - 1.0).abs() < 0.005,
+            "{bus} {shaft} {copper}"
+        );
+    }
+    let check = run(["check", PAPER]).stdout;
+    assert!(check.contains("; bus mean 16.44 A; "), "{check}");
 }

@@ -37,6 +37,8 @@ pub struct FiguresOfMerit {
     /// Root mean square of the phase currents over all phases, in amperes: three times its square and R
     /// are the copper loss.
     pub current_rms_a: Option<f64>,
+    /// Mean current drawn from the bus in amperes; negative: returned.
+    pub bus_current_a: Option<f64>,
     /// RMS distance of the current from the quasi-square reference of the true sector in the
     /// alpha-beta plane, in amperes. The reference's amplitude is that of the limited set-point
     /// ([`super::RunOptions::current`]).
@@ -116,6 +118,7 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
         i13_pct: current_harmonic(13),
         thd_pct: of_fundamental(&distortion),
         current_rms_a: Some(rms),
+        bus_current_a: Some(trace.bus_charge / trace.duration()),
         tracking_rms_a: Some(tracking),
         commutation_us: commutation_time(trace, current, threshold).map(|time| time * 1e6),
         switching_hz: Some(turn_ons as f64 / 6.0 / trace.duration()),
@@ -125,7 +128,7 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
 
 impl FiguresOfMerit {
     /// Names, values and units of figures of merit, in the order of their keys.
-    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 15] {
+    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 16] {
         [
             ("mean torque", self.mean_torque_nm, "Nm"),
             ("torque ripple, peak to peak", self.ripple_pp_pct, "%"),
@@ -138,6 +141,7 @@ impl FiguresOfMerit {
             ("current harmonic 13", self.i13_pct, "%"),
             ("current distortion", self.thd_pct, "%"),
             ("phase current, rms", self.current_rms_a, "A"),
+            ("bus current, mean", self.bus_current_a, "A"),
             (
                 "distance from quasi-square currents, rms",
                 self.tracking_rms_a,
@@ -171,6 +175,7 @@ impl FiguresOfMerit {
             i13_pct: mean(|m| m.i13_pct),
             thd_pct: mean(|m| m.thd_pct),
             current_rms_a: mean(|m| m.current_rms_a),
+            bus_current_a: mean(|m| m.bus_current_a),
             tracking_rms_a: mean(|m| m.tracking_rms_a),
             commutation_us: mean(|m| m.commutation_us),
             switching_hz: mean(|m| m.switching_hz),

@@ -3,7 +3,7 @@
 //! Bins of 2.5 us (a whole number per period) hold exact means, integrated on the solution.
 
 use super::{Recorder, RunOptions, Step};
-use crate::plant::{Observer, Segment, Series, TERMS, clarke, integral, sector_of};
+use crate::plant::{Observer, Segment, Series, TERMS, Terminal, clarke, integral, sector_of};
 use hexagen::{LegState, Legs};
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
@@ -83,6 +83,8 @@ pub struct Trace {
     pub current_floor: f64,
     /// Greatest torque of that current through a pair of phases, in newton metres.
     pub torque_floor: f64,
+    /// Charge taken from the bus in ampere-seconds; negative: returned.
+    pub bus_charge: f64,
     t_s: f64,
     /// Difference of two compare values at the edge of the hexagon.
     reach: u16,
@@ -123,6 +125,7 @@ impl Trace {
             periods: Vec::with_capacity(periods),
             current_floor,
             torque_floor: 2.0 * k_phase * current_floor,
+            bus_charge: 0.0,
             t_s,
             reach: params.timer_period,
             turn_ons: plant.turn_ons(),
@@ -279,6 +282,11 @@ struct CsvRow {
 impl Observer for Trace {
     fn segment(&mut self, segment: &Segment) {
         let terms = segment.terms;
+        for (terminal, current) in segment.terminal.iter().zip(&segment.current) {
+            if let Terminal::Rail { upper: true, .. } = terminal {
+                self.bus_charge += integral(&current[..terms], segment.duration);
+            }
+        }
         let mut torque: Series = [0.0; TERMS];
         segment.torque(&mut torque);
         let integrals = |t: f64| {

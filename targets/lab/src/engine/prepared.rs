@@ -4,7 +4,7 @@ use super::{
     AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, plant_of,
     reach_of, run_of,
 };
-use crate::closed_loop::{Measurement, RunOptions, STARTS, measure};
+use crate::closed_loop::{Measurement, measure};
 use crate::plant::{PlantError, PlantParams, Truth};
 use crate::{Interpreted, formats, state_names};
 use hexagen::Format;
@@ -254,12 +254,12 @@ impl Prepared {
         self.rated_torque().min(self.reach())
     }
 
-    /// The fixed-point program from one start, on the plant of its motor's file, at a mechanical
-    /// speed in rad/s and a torque in newton metres.
+    /// The fixed-point program on the plant of its motor's file, at a mechanical speed in rad/s and a
+    /// torque in newton metres.
     ///
     /// # Errors
     /// A plant parameter out of range.
-    pub fn measure_once(&self, omega_m: f64, torque: f64) -> Result<Measurement, PlantError> {
+    pub fn measure_at(&self, omega_m: f64, torque: f64) -> Result<Measurement, PlantError> {
         self.measure_on_bus(omega_m, torque, self.spec.inverter.v_bus)
     }
 
@@ -273,10 +273,7 @@ impl Prepared {
         torque: f64,
         v_bus: f64,
     ) -> Result<Measurement, PlantError> {
-        let run = RunOptions {
-            starts: vec![STARTS[0]],
-            ..run_of(&self.spec, omega_m, torque)
-        };
+        let run = run_of(&self.spec, omega_m, torque);
         let set_point = SetPoint {
             v_bus,
             ..self.set_point(torque)

@@ -194,7 +194,7 @@ fn of_file(own: &Prepared) -> Planned {
 fn limited(row: &Planned) -> Option<String> {
     let (torque, rated) = (row.reach()?, row.best().rated_torque());
     Some(format!(
-        "{}: max_current = {} A limits the torque to {} Nm with this reference, {:.0} % of the demand; the row and its limit are measured at that torque.",
+        "{}: max_current = {} A limits the torque to {} Nm with this reference, {:.0} % of the rated torque; the row and its limit are measured at that torque.",
         row.row.label,
         significant(row.best().spec.inverter.max_current, 3),
         significant(torque, 3),

@@ -146,7 +146,8 @@ fn of_limits(judgement: &Judgement) -> Option<String> {
     (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")))
 }
 
-/// The demanded torque's current beside the rated one, and what the largest set-point gives beyond it.
+/// The demanded torque's current beside the rated one, the mean that it draws from the bus at rated speed,
+/// and what the largest set-point gives beyond it.
 fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec) -> String {
     let beyond = if judgement.greatest_torque_nm > MORE * judgement.torque_nm {
         format!(
@@ -163,8 +164,12 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     } else {
         String::new()
     };
+    let drawn = judgement.rated().and_then(|point| point.bus_current_a);
+    let drawn = drawn.map_or(String::new(), |mean| {
+        format!("; bus mean {}", engineering(mean, "A"))
+    });
     format!(
-        "{} takes a peak of {}, rated {} peak{beyond}; trips at {}",
+        "{} takes a peak of {}, rated {} peak{drawn}{beyond}; trips at {}",
         engineering(judgement.torque_nm, "Nm"),
         engineering(judgement.peak_a, "A"),
         engineering(motor.rated_current, "A"),
@@ -184,7 +189,7 @@ fn of_torque(judgement: &Judgement) -> String {
     });
     let runs: Vec<String> = nominal.chain(lowest).collect();
     let demand = engineering(judgement.torque_nm, "Nm");
-    format!("of {demand}: {}", runs.join("; "))
+    format!("of demand {demand}: {}", runs.join("; "))
 }
 
 fn of_run(at: &str, point: &Point) -> String {

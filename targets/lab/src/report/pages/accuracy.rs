@@ -132,7 +132,7 @@ fn shown_figures(scale: &TorqueScale) -> [Shown; 14] {
 
 /// Differences of figures of merit, of signals if measured, and errors of single steps.
 pub fn errors(data: &Results) -> Vec<Block> {
-    let has_figures = data.variants.iter().any(|of| !of.same_words.is_empty());
+    let has_figures = data.variants.iter().flat_map(compared).next().is_some();
     let has_signals = data.variants.iter().any(|of| !of.signal_errors.is_empty());
     let mut blocks = Vec::new();
     if has_figures {
@@ -150,16 +150,20 @@ pub fn errors(data: &Results) -> Vec<Block> {
     blocks
 }
 
+/// The comparisons of a variant; a drive that tripped has none.
+fn compared(variant: &Variant) -> impl Iterator<Item = &SameWords> {
+    let none = FiguresOfMerit::default();
+    let all = variant.same_words.iter();
+    all.filter(move |at| at.fixed != none || at.ideal != none)
+}
+
 fn figures_of_merit(data: &Results) -> Vec<Block> {
     let shown = shown_figures(&TorqueScale::of(data.torque));
     let differing = |variant: &Variant| {
-        let pairs = variant
-            .same_words
-            .iter()
-            .flat_map(|at| shown.iter().map(move |of| (of, at)));
+        let pairs = compared(variant).flat_map(|at| shown.iter().map(move |of| (of, at)));
         pairs.filter(|(of, at)| !of.is_alike(at)).count()
     };
-    let comparisons: usize = data.variants.iter().map(|of| of.same_words.len()).sum();
+    let comparisons = data.variants.iter().flat_map(compared).count();
     let total = grouped((comparisons * shown.len()) as u64);
     let apart: usize = data.variants.iter().map(differing).sum();
     let verdict = match apart {
@@ -196,10 +200,10 @@ fn figure_table(data: &Results, shown: &[Shown]) -> Table {
     let figures = shown.iter().map(|of| Column::number(of.name, of.unit));
     let mut table = Table::new("errors", first.into_iter().chain(figures));
     let variants = data.variants.iter().enumerate();
-    for (index, variant) in variants.filter(|(_, variant)| !variant.same_words.is_empty()) {
+    for (index, variant) in variants.filter(|(_, variant)| compared(variant).next().is_some()) {
         let label = Cell::from(variant.label.clone()).signed(Some(variant_sign(index)));
         table.group(Label::Above(label));
-        for at in &variant.same_words {
+        for at in compared(variant) {
             let first = [capture_name(at.capture).into(), number(at.rpm, 0).into()];
             let cells = shown.iter().map(|of| of.cell(at));
             table.row(first.into_iter().chain(cells));

@@ -1,5 +1,5 @@
-//! One commutation of the motor file's own controller, the first plots of the page: phase currents,
-//! and the torque beside that of the other variants.
+//! One sixth of an electrical turn of the motor file's own controller, with the commutation where it has
+//! one, the first plots of the page: phase currents, and the torque beside that of the other variants.
 
 use super::plotted;
 use super::waves::current_at;
@@ -38,7 +38,7 @@ pub fn blocks(data: &Results) -> Vec<Block> {
                 one control period.";
     let rpm = number(record.rpm, 0);
     vec![
-        Block::Heading(format!("One commutation at {rpm} rpm")),
+        Block::Heading(format!("One sixth of an electrical turn at {rpm} rpm")),
         Block::Figures {
             columns: 2,
             figures: vec![
@@ -71,7 +71,8 @@ fn currents(data: &Results, record: &Record) -> Plot {
     let all = phases.iter().flat_map(|of| of.most.iter().chain(&of.least));
     let most = all.fold(1.1 * data.current.abs(), |most, i| most.max(i.abs()));
     let y = Axis::new("phase current in A", &(-most..most), 8);
-    let description = "Phase currents in one commutation of the motor file's controller";
+    let description =
+        "Phase currents of the motor file's controller in one sixth of an electrical turn";
     let mut plot = window(description.to_owned(), y);
     for phase in 0..3 {
         // Its lines are level: clamped ones end at the window's edge.
@@ -103,7 +104,7 @@ fn torque(data: &Results, record: &Record) -> Plot {
     };
     let range = torque_range(demand, [&of(record)].into_iter());
     let y = Axis::new(format!("torque in {}", scale.unit), &range, 8);
-    let mut plot = window("Torque in one commutation".to_owned(), y);
+    let mut plot = window("Torque in one sixth of an electrical turn".to_owned(), y);
     let across = [(WINDOW.start, demand), (WINDOW.end, demand)];
     plot.line(across, Stroke::dashed(DEMAND, 1.0, (6.0, 4.0)));
     for (index, other) in plotted(data) {

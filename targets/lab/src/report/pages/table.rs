@@ -2,7 +2,7 @@
 //! figures.
 
 use super::{capture_name, variant_sign};
-use crate::closed_loop::{Held, LimitOutcome, Side};
+use crate::closed_loop::{Held, LimitOutcome, Side, SpeedLimit};
 use crate::engine::Model;
 use crate::report::{Block, Cell, Column, Label, Table, Tone};
 use crate::results::{
@@ -109,7 +109,7 @@ fn variant_row(data: &Results, variant: &Variant) -> Vec<Cell> {
             _ => cells.push(Cell::from("trips").toned(Tone::Missed).across(2)),
         }
     }
-    cells.push(limit_cell(fixed));
+    cells.push(limit_text(fixed.limit.as_ref()).into());
     let switching = fixed.points.last().and_then(|top| top.figures.switching_hz);
     cells.push(number(switching.map(|hertz| 1e-3 * hertz), 1).into());
     let more = |model: Model, capture| {
@@ -245,13 +245,17 @@ fn limit_cell(run: &Run) -> Cell {
         Some(Side::Above) => ", torque above",
         Some(Side::Below) | None => "",
     };
-    let percent = limit.and_then(|limit| limit.limit_pct);
-    let text = match limit.map(|limit| limit.outcome) {
-        Some(LimitOutcome::NotReached) => format!("above {}", number(percent, 0)),
-        Some(LimitOutcome::NeverHeld) => format!("never held{above}"),
-        Some(LimitOutcome::Found) => number(percent, 1) + above,
-        None => number(None, 0),
-    };
+    let text = limit_text(limit) + above;
     let judged = judge_limit(limit, run.expected.as_ref());
     with_expected(text, judged, |percent| number(percent, 0))
+}
+
+fn limit_text(limit: Option<&SpeedLimit>) -> String {
+    let percent = limit.and_then(|limit| limit.limit_pct);
+    match limit.map(|limit| limit.outcome) {
+        Some(LimitOutcome::NotReached) => format!("above {}", number(percent, 0)),
+        Some(LimitOutcome::NeverHeld) => "never held".to_owned(),
+        Some(LimitOutcome::Found) => number(percent, 1),
+        None => number(None, 0),
+    }
 }

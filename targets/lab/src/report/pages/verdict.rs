@@ -111,7 +111,7 @@ fn ripples(run: &Run) -> String {
     format!("{}, peak to peak", all.join(", "))
 }
 
-/// Copper losses of the recorded currents.
+/// Copper losses of the recorded currents, and the bus current at rated speed.
 fn losses(data: &Results, variant: &Variant) -> String {
     let all: Vec<String> = variant
         .records
@@ -132,7 +132,17 @@ fn losses(data: &Results, variant: &Variant) -> String {
     if all.is_empty() {
         return String::new();
     }
-    format!("{} in the windings", all.join(", "))
+    let rated = data.own.as_ref().and_then(|own| own.judgement.rated());
+    let drawn = rated.and_then(|point| {
+        let mean = quantity(point.bus_current_a?, "A");
+        let rpm = number(point.rpm, 0);
+        Some(format!("; the bus gives a mean of {mean} at {rpm} rpm"))
+    });
+    format!(
+        "{} in the windings{}",
+        all.join(", "),
+        drawn.unwrap_or_default()
+    )
 }
 
 fn verified(data: &Results) -> String {
