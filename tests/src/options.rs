@@ -140,13 +140,6 @@ const SHARED: &[Row] = &[
         &[
             ("sampled", &[("controller", "hall_capture", "\"sampled\"")]),
             ("timer", &[("controller", "hall_capture", "\"timer\"")]),
-            (
-                "learnt",
-                &[
-                    ("controller", "hall_capture", "\"timer\""),
-                    ("controller", "hall_learning", "\"on\""),
-                ],
-            ),
         ],
     ),
     (
@@ -163,7 +156,14 @@ const SHARED: &[Row] = &[
                 "watched",
                 &[
                     ("controller", "emf", "\"observer\""),
-                    ("controller", "residual_timeout", "\"3 ms\""),
+                    ("controller", "residual_timeout", "\"4 ms\""),
+                ],
+            ),
+            (
+                "learning",
+                &[
+                    ("controller", "emf", "\"observer\""),
+                    ("controller", "hall_learning", "\"on\""),
                 ],
             ),
         ],
