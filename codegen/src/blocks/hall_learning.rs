@@ -10,8 +10,6 @@
 use super::Lowering;
 use super::measure::Hall;
 use super::rotor::SIXTH;
-use super::round_half_up;
-use super::speed_rise::GREATEST_RISE;
 use crate::diagnostics::engineering;
 use crate::ir::{Expr, Flag, Interval, Memory, Named as _, Phases, named, pick};
 use std::f64::consts::{PI, TAU};
@@ -26,8 +24,8 @@ const WIDEST: i64 = 2 * SIXTH;
 /// Edges in a row, in one direction, behind which all six intervals are measured.
 const WHOLE_TURN: i32 = 7;
 
-/// Greatest rise of the speed to the coming sector at which the rotor turns steadily: 1/16.
-const STEADY_RISE: f64 = 1.0 / 16.0;
+/// A rotor turns steadily where a turn takes as long as the one that ended an edge before, but for 2^-6 of it.
+const STEADY_SHIFT: u32 = 6;
 
 /// Angle by which all edges are moved at one of them: a 1024th of a sector, so 5 degrees take 14 turns.
 const OFFSET_STEP: i64 = SIXTH >> 10;
@@ -76,8 +74,9 @@ pub(super) struct Edge<'b> {
     pub interval: Expr<'b>,
     /// Angle per tick, mean of the turn.
     pub rate: Expr<'b>,
-    /// Rise of the speed to the coming sector.
-    pub rise: Expr<'b>,
+    /// Ticks of the turn, and of the one that ended an edge before.
+    pub rev: Expr<'b>,
+    pub rev_before: Expr<'b>,
 }
 
 /// The new and the old words of an edge.
@@ -189,10 +188,6 @@ impl<'b> HallLearning<'b> {
         let (begin, width) = (self.begin.read(), self.width.read());
         let doc = "Greatest angle of a sector: 120 degrees.";
         let widest = l.number("sector_most", WIDEST, doc);
-        let limit = round_half_up(STEADY_RISE * 32_f64.exp2()) as i64;
-        const { assert!(STEADY_RISE < GREATEST_RISE, "a limited rise is not steady") };
-        let doc = "Greatest rise of the speed at which sectors tell where the sensors stand: 1/16.";
-        let steady_rise = l.number("steady_rise", limit, doc);
         let doc = "Limit of a learnt displacement: 15 degrees.";
         let most = l.number("shift_most", MOST, doc);
         let doc = "Edge at which a sector begins: 1, 2 or 3; opposite edges are one sensor's.";
@@ -204,7 +199,8 @@ impl<'b> HallLearning<'b> {
             let is_second = crossed.is(2);
             let is_whole = steady_edges.is_at_least(WHOLE_TURN - 1);
             let steady_now = edge.again.choose((steady_edges + 1).min(WHOLE_TURN), 1);
-            let learns = edge.again & (is_whole & edge.rise.abs().is_at_most(steady_rise));
+            let is_steady = (edge.rev - edge.rev_before).abs().is_at_most(edge.rev >> STEADY_SHIFT);
+            let learns = edge.again & (is_whole & is_steady);
             let turned = edge.rate.mul_limited(edge.interval, widest);
             let wider = edge.forward.sign((turned - width).named("wider_forward"));
             let move_on = learns.choose(wider.clamp(-most, most) >> 2, 0);

@@ -387,14 +387,14 @@ impl<'b> RotorWords<'b> {
         let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
         let rate = rev_seen.max(least).turn_over().named("rate");
         let rise = rise.map(|old| (speed_rise(l, seen, [rev_seen, rate]), old));
-        let learning = self.learning.zip(rise).zip(observed);
-        let learnt = learning.map(|((learning, (rise, _)), seen)| {
+        let learnt = self.learning.zip(observed).map(|(learning, seen)| {
             let edge = Edge {
                 forward: to_next,
                 again,
                 interval,
                 rate,
-                rise,
+                rev: rev_seen,
+                rev_before: rev,
             };
             (learning.at_edge(l, hall, &edge, &seen), seen.last)
         });

@@ -180,11 +180,6 @@ pub(crate) fn extreme_sectors(hall_angles: &[f64; 6]) -> [f64; 2] {
     })
 }
 
-/// Whether each Hall edge lies half a turn from the third one after it.
-pub(crate) fn are_opposite(hall_angles: &[f64; 6]) -> bool {
-    (0..3).all(|k| (hall_angles[k + 3] - hall_angles[k] - 180.0).abs() < 1e-6)
-}
-
 /// `hall_angles` of sensors in their places.
 pub const HALL_ANGLES: [f64; 6] = [-30.0, 30.0, 90.0, 150.0, 210.0, 270.0];
 
@@ -212,7 +207,8 @@ impl MotorSpec {
 
     /// Whether each Hall edge lies half a turn from the third one after it.
     pub fn has_opposite_edges(&self) -> bool {
-        are_opposite(&self.hall_angles)
+        let angles = self.hall_angles;
+        (0..3).all(|k| (angles[k + 3] - angles[k] - 180.0).abs() < 1e-6)
     }
 
     /// Width of the widest sector over 60 degrees.

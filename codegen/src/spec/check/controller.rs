@@ -75,7 +75,7 @@ pub(super) fn read(
         Some(RotorSource::Halls) => {
             let capture = read_capture(&reader, inverter, errors);
             if (controller.as_ref()).is_some_and(|spec| spec.common().hall_learning) {
-                check_learning(&reader, motor, capture, errors);
+                check_learning(&reader, capture, errors);
             }
             capture
         }
@@ -84,29 +84,14 @@ pub(super) fn read(
     (controller, sensing)
 }
 
-/// The places of Hall sensors are learnt from the times between their edges, of which opposite ones are a sensor's own.
-fn check_learning(
-    reader: &Reader,
-    motor: &Motor,
-    capture: Option<RotorSensing>,
-    errors: &mut Collector,
-) {
+/// The places of Hall sensors are learnt from the times between their edges.
+fn check_learning(reader: &Reader, capture: Option<RotorSensing>, errors: &mut Collector) {
     if capture == Some(RotorSensing::SampledHalls) {
         let why = "at samples the time between two edges is known to a control period only";
         refuse(
             reader,
             HALL_LEARNING,
             ["hall_capture", "sampled"],
-            why,
-            errors,
-        );
-    }
-    if !motor.has_opposite_edges() {
-        let why = "an edge must lie half a turn from the third one after it, which both are the same sensor's";
-        refuse(
-            reader,
-            HALL_LEARNING,
-            ["hall_angles", "uneven"],
             why,
             errors,
         );

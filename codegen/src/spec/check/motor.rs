@@ -4,7 +4,7 @@ use super::emf::{self, Emf, Winding};
 use super::{angle, emf_shape};
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
-use crate::spec::model::{are_opposite, extreme_sectors};
+use crate::spec::model::extreme_sectors;
 use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
 use crate::spec::units::Dimension;
@@ -104,11 +104,6 @@ impl Motor<'_> {
     /// Width of the narrowest and of the widest sector, over 60 degrees.
     pub fn extreme_sectors(&self) -> [f64; 2] {
         extreme_sectors(&self.hall_angles)
-    }
-
-    /// Whether each Hall edge lies half a turn from the third one after it.
-    pub fn has_opposite_edges(&self) -> bool {
-        are_opposite(&self.hall_angles)
     }
 
     /// The checked motor. None if something is missing or in error.

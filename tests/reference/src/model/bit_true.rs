@@ -403,8 +403,8 @@ impl<W: Word> BitTrue<W> {
         } else if self.variant.rotor {
             let ticks = input(sample.ticks());
             let timing = &mut self.state.timing;
-            let is_whole = timing.step(&self.clock, &event, direction_before, ticks);
-            angle = rotor::angle(&self.clock, k, &self.state, (&event, is_whole), i);
+            let tells = timing.step(&self.clock, &event, direction_before, ticks);
+            angle = rotor::angle(&self.clock, k, &self.state, (&event, tells), i);
             self.state.speed = angle.speed;
             self.state.learnt = angle.learnt;
         }

@@ -3,7 +3,7 @@
 //! the integer part is counted, and a turn is corrected for the rest.
 
 use super::sector::HallEvent;
-use crate::exact::{Word, greater, lesser, within, word};
+use crate::exact::{Word, floor_shift, greater, lesser, within, word};
 use crate::spec::{HallCapture, Inverter, Motor, Spec};
 
 /// Constants of the timing, in ticks.
@@ -51,9 +51,6 @@ impl HallClock {
         }
     }
 }
-
-/// Greatest rise of the speed at which the sensors' places are learnt.
-pub const STEADY_RISE: f64 = 0.0625;
 
 /// Currents at which the EMF tells the angle, over the greatest.
 pub const SMALL_CURRENT: f64 = 0.1;
@@ -155,7 +152,7 @@ impl<W: Word> HallTiming<W> {
     }
 
     /// One sample; `direction_before` is the direction before this sample's edge was evaluated.
-    /// Leaves the present age in `age_prev`. Returns whether this is an edge at which all six intervals are measured.
+    /// Leaves the present age in `age_prev`. Returns whether this is an edge behind a whole turn of steady speed.
     #[inline]
     pub fn step(
         &mut self,
@@ -173,7 +170,7 @@ impl<W: Word> HallTiming<W> {
             (false, false) => age_before,
         };
         let age = lesser(since, clock.age_max + 1.0);
-        let mut is_whole = false;
+        let mut tells = false;
         if event.edge {
             let interval = within(age_before - age, 1.0, clock.age_max);
             let step_ok = event.forward || event.backward;
@@ -184,7 +181,7 @@ impl<W: Word> HallTiming<W> {
                 self.intervals.rotate_right(1);
                 self.intervals[0] = interval;
             }
-            is_whole = again && self.steady >= WHOLE_TURN - 1;
+            let is_whole = self.steady >= WHOLE_TURN - 1;
             self.steady = if again {
                 (self.steady + 1).min(WHOLE_TURN)
             } else {
@@ -198,13 +195,16 @@ impl<W: Word> HallTiming<W> {
                 1
             };
             let intervals = self.intervals.into_iter();
+            let rev_before = self.rev;
             self.rev = intervals.fold(word(clock.turn_rest), |turn, interval| turn + interval);
+            let is_steady = (self.rev - rev_before).abs() <= floor_shift(self.rev, 6);
+            tells = again && is_whole && is_steady;
             self.count_speed(self.edges == 2 && self.rev < clock.over_speed_turn);
         }
         if age > clock.age_max || (self.edges == 2 && age * 3.0 > self.rev) {
             self.edges = 0;
         }
         self.age_prev = age;
-        is_whole
+        tells
     }
 }

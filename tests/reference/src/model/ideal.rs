@@ -11,9 +11,7 @@ mod speed;
 mod vector;
 
 use super::angle::AngleSensor;
-use super::hall::{
-    GREATEST_CHANGE, HallClock, RISE, SMALL_CURRENT, STEADY_RISE, across_at_small_angle,
-};
+use super::hall::{GREATEST_CHANGE, HallClock, RISE, SMALL_CURRENT, across_at_small_angle};
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Reach, Trace};
@@ -389,9 +387,9 @@ impl Ideal {
             } else if self.variant.rotor {
                 let ticks = f64::from(sample.ticks());
                 let timing = &mut self.state.timing;
-                let is_whole = timing.step(&self.clock, &event, direction_before, ticks);
+                let tells = timing.step(&self.clock, &event, direction_before, ticks);
                 if event.edge && self.learns_halls {
-                    self.learn_edges(&event, is_whole, [i_a, i_b]);
+                    self.learn_edges(&event, tells, [i_a, i_b]);
                 }
                 self.angle(sector)
             } else {
@@ -706,9 +704,9 @@ impl Ideal {
         1.0 + RISE * change / timing.rev.max(self.clock.rev_min)
     }
 
-    /// Learns from an edge where the sensors stand; `is_whole`: behind a whole turn.
-    fn learn_edges(&mut self, event: &HallEvent, is_whole: bool, i: [f64; 2]) {
-        let is_steady = (self.ahead() - 1.0).abs() <= STEADY_RISE;
+    /// Learns from an edge where the sensors stand; `tells`: behind a whole turn of steady
+    /// speed.
+    fn learn_edges(&mut self, event: &HallEvent, tells: bool, i: [f64; 2]) {
         let omega = self.electrical_speed();
         let across = self.state.emf_error[1];
         let least = self.across_at_small_angle * omega * self.clock.period / self.t_s;
@@ -716,7 +714,7 @@ impl Ideal {
             .iter()
             .all(|i| i.abs() <= SMALL_CURRENT * self.max_current);
         let tells_angle = is_light && across.abs() > least;
-        let turned = (is_whole && is_steady).then(|| {
+        let turned = tells.then(|| {
             let turned = omega * self.state.timing.intervals[0];
             (turned, tells_angle.then_some(across))
         });

@@ -135,7 +135,7 @@ fn compare(
         worst.decided_otherwise += 1;
         return;
     }
-    // An edge behind which the rotor speeds up by just the limit is learnt from or not.
+    // At an edge the currents may be just as small as those at which the EMF tells the angle.
     let learns = variant.spec.loop_options().hall_learning == Switch::On;
     if learns && ((b.theta - a.theta + PI).rem_euclid(TAU) - PI).abs() > 1e-4 {
         worst.decided_otherwise += 1;

@@ -5,7 +5,7 @@ use super::sectors::SIXTH;
 use crate::exact::{
     Coefficient, Word, both, either, floor_shift, lesser, pow2, round_half_up, within, word,
 };
-use crate::model::hall::{SMALL_CURRENT, STEADY_RISE, across_at_small_angle};
+use crate::model::hall::{SMALL_CURRENT, across_at_small_angle};
 use crate::model::sector::{HallEvent, crossed_edge, ends};
 use crate::{Error, Spec};
 use std::f64::consts::TAU;
@@ -42,12 +42,11 @@ impl<W: Word> Default for Learnt<W> {
 /// The last turn at an edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn<W> {
-    /// It was measured whole.
-    pub is_whole: bool,
+    /// It was whole, at a steady speed.
+    pub tells: bool,
     /// Ticks since the edge before.
     pub interval: W,
     pub rate: W,
-    pub rise: W,
     /// The currents are small, and the EMF's error across the shape is not.
     pub tells_angle: bool,
     /// That error.
@@ -85,10 +84,9 @@ impl<W: Word> Learnt<W> {
     #[inline]
     pub fn at_edge(self, event: &HallEvent, sector_prev: usize, turn: &Turn<W>, last: f64) -> Self {
         let crossed = crossed_edge(event, sector_prev);
-        let limit = STEADY_RISE * pow2(32);
         let mut on = word(0.0);
         let mut all = self.all;
-        if turn.is_whole && turn.rise >= -limit && turn.rise <= limit {
+        if turn.tells {
             let wider = lesser(turn.rate * turn.interval, 2.0 * SIXTH) - self.width;
             let wider = either(event.forward, wider, -wider);
             on = floor_shift(within(wider, -MOST, MOST), 2);

@@ -107,13 +107,13 @@ fn advanced<W: Word>(
     to_index(floor(ahead * 6.0 * pow2(-32))) + 1
 }
 
-/// The angle after `state.timing` has followed the sample; `is_whole`: at an edge behind a whole turn.
+/// The angle after `state.timing` has followed the sample; `tells`: at an edge behind a whole turn of steady speed.
 #[inline]
 pub fn angle<W: Word>(
     clock: &HallClock,
     k: &Constants<W>,
     state: &State<W>,
-    (event, is_whole): (&HallEvent, bool),
+    (event, tells): (&HallEvent, bool),
     i: [W; 2],
 ) -> Angle<W> {
     let timing = &state.timing;
@@ -137,10 +137,9 @@ pub fn angle<W: Word>(
         if let Some(offset) = &k.offset {
             let across = state.emf_error[1];
             let turn = Turn {
-                is_whole,
+                tells,
                 interval: timing.intervals[0],
                 rate,
-                rise: speed.rise,
                 tells_angle: offset.tells_angle(i, across, state.speed.step),
                 across,
             };
