@@ -4,7 +4,8 @@
 //! While the rotor turns steadily, the part of a turn's time that a sector takes is its width. A sector that
 //! is wider than believed tells that the edge at its end stands farther on: the edge is moved by a quarter of
 //! the difference, and the other two back by half of that each, because the times tell how the edges stand to
-//! each other, not to the rotor. That is told by the EMF: with little current, which an inductance off its
+//! each other, not to the rotor: the sensor between the others is taken to be in its place, so that one that
+//! stands out of place is found. How all three stand is told by the EMF: with little current, which an inductance off its
 //! stated value could turn, the error of the modelled EMF across the rotor's shape is that of the angle.
 
 use super::Lowering;
@@ -108,7 +109,7 @@ impl<'b> HallLearning<'b> {
         let offset = l.b.memory("shift_all", 0, Interval::symmetric(MOST), doc);
         let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
         let begin =
-            l.b.memory("sector_shift", 0, Interval::symmetric(3 * MOST), doc);
+            l.b.memory("sector_shift", 0, Interval::symmetric(4 * MOST), doc);
         let doc = "Last angle of the sector, from where it begins, 2^32 a turn.";
         let width = l.b.memory(
             "sector_width",
@@ -224,7 +225,8 @@ impl<'b> HallLearning<'b> {
             let begin_alone = edge.forward.choose(at_edge, before);
             let end_seen = edge.forward.choose(behind, at_edge);
             let width_seen = (seen.last + (end_seen - begin_alone)).clamp(0, widest);
-            let begin_seen = begin_alone + all;
+            let middle = one.min(two).max(one.max(two).min(three));
+            let begin_seen = begin_alone - middle + all;
         }
         Learnt([
             ("shift_1_next", self.shifts[0], [one, first]),

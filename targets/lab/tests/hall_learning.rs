@@ -97,7 +97,7 @@ fn sensors_out_of_place_ripple_little_more_than_others_behind_twenty_turns() {
             for share in SHARES {
                 let [full, sound] = of(&plain, [0.0; 3], Spell::None)(share);
                 lines.push(format!("{} at {share}: {sound:.2} %", source.name));
-                for places in PLACES {
+                for (k, places) in PLACES.into_iter().enumerate() {
                     let [_, unlearnt] = of(&plain, places, Spell::None)(share);
                     let [_, apart] = of(&learning, places, Spell::None)(share);
                     let [mean, learnt] = of(&learning, places, Spell::Light)(share);
@@ -105,6 +105,9 @@ fn sensors_out_of_place_ripple_little_more_than_others_behind_twenty_turns() {
                         "{places:?}: {unlearnt:.2} % unlearnt, {apart:.2} % at full current, {learnt:.2} % behind a spell of little"
                     );
                     assert!(learnt < sound + BEYOND, "{} at {share}: {found}", source.name);
+                    // The third case needs the EMF: its sensors stand out of place by 4 degrees together.
+                    let is_found = k == 2 || apart < sound + BEYOND;
+                    assert!(is_found, "{} at {share}: {found}", source.name);
                     assert!((mean - full).abs() < 1.0, "{} at {share}: {mean}", source.name);
                     lines.push(format!("    {found}"));
                 }

@@ -606,7 +606,7 @@ fn read_hall_learning(reader: &Reader, emf: Option<EmfSource>, errors: &mut Coll
         return false;
     };
     if is_on && emf != EmfSource::Observer {
-        let why = "only `emf: observer` follows the angle closely enough to gain by it";
+        let why = "only `emf: observer` tells how all sensors stand against the EMF";
         refuse(reader, HALL_LEARNING, ["emf", emf.word()], why, errors);
     }
     is_on && emf == EmfSource::Observer

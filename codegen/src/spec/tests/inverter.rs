@@ -508,6 +508,28 @@ fn a_residual_timeout_is_whole_periods_from_50_up_and_needs_the_observer() {
 }
 
 #[test]
+fn hall_sensors_are_learnt_with_timed_edges_and_the_observer() {
+    let learns = |clock: &str, options: &str| {
+        let inverter = format!("{TIMER}{clock}adc_range = \"40 A\"");
+        let checked = try_check(&inverter, &format!("kind = \"pdcc\"\n{options}"));
+        checked.map(|(spec, _)| spec.controller.common().hall_learning)
+    };
+    let clock = "hall_timer_clock = \"1 MHz\"\n";
+    assert_eq!(learns(clock, ""), Ok(false));
+    assert_eq!(learns(clock, "hall_learning = \"on\""), Ok(true));
+    let told = learns("", "hall_learning = \"on\"").expect_err("edges at samples");
+    assert!(
+        told.contains("`hall_learning`: on has no effect with `hall_capture = \"sampled\"`"),
+        "{told}"
+    );
+    let told = learns(clock, "emf = \"model\"\nhall_learning = \"on\"").expect_err("no observer");
+    assert!(
+        told.contains("`hall_learning`: on has no effect with `emf = \"model\"`: only `emf = \"observer\"` tells"),
+        "{told}"
+    );
+}
+
+#[test]
 fn hall_angles_are_near_their_places_whatever_the_turn() {
     let angles = |list: &str| {
         let motor = MOTOR.replace(

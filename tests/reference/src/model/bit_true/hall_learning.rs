@@ -3,7 +3,8 @@
 use super::constants::Scale;
 use super::sectors::SIXTH;
 use crate::exact::{
-    Coefficient, Word, both, either, floor_shift, lesser, pow2, round_half_up, within, word,
+    Coefficient, Word, both, either, floor_shift, greater, lesser, pow2, round_half_up, within,
+    word,
 };
 use crate::model::hall::{SMALL_CURRENT, across_at_small_angle};
 use crate::model::sector::{HallEvent, crossed_edge, ends};
@@ -101,12 +102,14 @@ impl<W: Word> Learnt<W> {
             within(self.shifts[x] + moved, -MOST, MOST)
         });
         let each = [shifts[0], shifts[1], -(shifts[0] + shifts[1])];
+        let [one, two, three] = each;
+        let middle = greater(lesser(one, two), lesser(greater(one, two), three));
         let [begin, end] = ends(crossed, event.forward).map(|edge| each[edge]);
         let width = within(end - begin + last, 0.0, 2.0 * SIXTH);
         Self {
             shifts,
             all,
-            begin: begin + all,
+            begin: begin - middle + all,
             width,
         }
     }

@@ -55,11 +55,13 @@ impl PlacedEdges {
         let step = across.map_or(0.0, |across| STEP * f64::signum(way * across));
         let all = (self.all + step).clamp(-MOST, MOST);
         let each = [shifts[0], shifts[1], -(shifts[0] + shifts[1])];
+        let [one, two, three] = each;
+        let middle = one.min(two).max(one.max(two).min(three));
         let [begin, end] = ends(crossed, event.forward).map(|edge| each[edge]);
         Self {
             shifts,
             all,
-            begin: begin + all,
+            begin: begin - middle + all,
             width: (width + end - begin).clamp(0.0, 2.0 * FRAC_PI_3),
         }
     }
