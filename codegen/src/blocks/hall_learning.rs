@@ -5,8 +5,9 @@
 //! is wider than believed tells that the edge at its end stands farther on: the edge is moved by a quarter of
 //! the difference, and the other two back by half of that each, because the times tell how the edges stand to
 //! each other, not to the rotor: the sensor between the others is taken to be in its place, so that one that
-//! stands out of place is found. How all three stand is told by the EMF: with little current, which an inductance off its
-//! stated value could turn, the error of the modelled EMF across the rotor's shape is that of the angle.
+//! stands out of place is found. How all three stand is told by the EMF. An inductance off its stated value
+//! turns the modelled EMF in proportion to the current; with little current its error across the rotor's
+//! shape is that of the angle.
 
 use super::Lowering;
 use super::measure::Hall;
@@ -22,7 +23,8 @@ const MOST: i64 = SIXTH / 4;
 /// Greatest angle of a sector: 120 degrees.
 const WIDEST: i64 = 2 * SIXTH;
 
-/// Edges in a row, in one direction, behind which all six intervals are measured.
+/// Edges in a row, in one direction, behind which all six intervals are measured. (The one that the last of them
+/// replaces stood for all six.)
 const WHOLE_TURN: i32 = 7;
 
 /// A rotor turns steadily where a turn takes as long as the one that ended an edge before, but for 2^-6 of it.
@@ -166,7 +168,8 @@ impl<'b> HallLearning<'b> {
         );
         let [a, b] = seen.currents.0;
         named! {
-            let is_light = a.abs().is_at_most(small) & b.abs().is_at_most(small);
+            let is_light_in_c = (a + b).abs().is_at_most(small);
+            let is_light = a.abs().is_at_most(small) & (b.abs().is_at_most(small) & is_light_in_c);
             let is_off = seen.across.abs().is_above(k_across * seen.step_angle.abs());
             let lags = forward.sign(seen.across).is_above(0);
             let moves = learns & (is_light & is_off);

@@ -6,8 +6,14 @@ use hexagen_lab::plant::{Plant, PlantParams};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Displacements of the sensors whose edges begin sectors 1 and 4, 2 and 5, 3 and 6, degrees: one or three.
-const PLACES: [[f64; 3]; 3] = [[5.0, 0.0, 0.0], [5.0, -5.0, 0.0], [-1.0, -4.0, -5.0]];
+/// Displacements of the sensors whose edges begin sectors 1 and 4, 2 and 5, 3 and 6, degrees: one; two in
+/// opposite directions; two and three the same way, which only the EMF tells.
+const PLACES: [[f64; 3]; 4] = [
+    [5.0, 0.0, 0.0],
+    [5.0, -5.0, 0.0],
+    [5.0, 5.0, 0.0],
+    [-1.0, -4.0, -5.0],
+];
 
 /// Electrical turns of learning.
 const TURNS: f64 = 20.0;
@@ -105,8 +111,7 @@ fn sensors_out_of_place_ripple_little_more_than_others_behind_twenty_turns() {
                         "{places:?}: {unlearnt:.2} % unlearnt, {apart:.2} % at full current, {learnt:.2} % behind a spell of little"
                     );
                     assert!(learnt < sound + BEYOND, "{} at {share}: {found}", source.name);
-                    // The third case needs the EMF: its sensors stand out of place by 4 degrees together.
-                    let is_found = k == 2 || apart < sound + BEYOND;
+                    let is_found = k >= 2 || apart < sound + BEYOND;
                     assert!(is_found, "{} at {share}: {found}", source.name);
                     assert!((mean - full).abs() < 1.0, "{} at {share}: {mean}", source.name);
                     lines.push(format!("    {found}"));
@@ -130,7 +135,7 @@ fn wrong_data_of_the_motor_do_not_turn_what_is_learnt() {
             (1.0, 0.75, 1.0),
             (1.0, 1.0, 0.8),
         ] {
-            for (places, most) in [([0.0; 3], 1.5), (PLACES[2], 1.5)] {
+            for (places, most) in [([0.0; 3], 1.5), (PLACES[3], 1.5)] {
                 let places_of = |params: PlantParams| with_edges(params.scaled(r, l, k), places);
                 let plain = figures(
                     &learning,

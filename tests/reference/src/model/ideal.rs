@@ -396,6 +396,8 @@ impl Ideal {
                 (0.0, 0.0, sector)
             };
 
+        self.state.step_angle = step_angle;
+
         // Slew rate, speed loop
         let (mut current, mut speed_integral) = (self.current, self.state.speed_integral);
         if self.slew_step > 0.0 {
@@ -709,10 +711,10 @@ impl Ideal {
     fn learn_edges(&mut self, event: &HallEvent, tells: bool, i: [f64; 2]) {
         let omega = self.electrical_speed();
         let across = self.state.emf_error[1];
-        let least = self.across_at_small_angle * omega * self.clock.period / self.t_s;
-        let is_light = i
-            .iter()
-            .all(|i| i.abs() <= SMALL_CURRENT * self.max_current);
+        let least = self.across_at_small_angle * self.state.step_angle.abs() / self.t_s;
+        let [i_a, i_b] = i;
+        let mut currents = [i_a, i_b, i_a + i_b].into_iter();
+        let is_light = currents.all(|i| i.abs() <= SMALL_CURRENT * self.max_current);
         let tells_angle = is_light && across.abs() > least;
         let turned = tells.then(|| {
             let turned = omega * self.state.timing.intervals[0];

@@ -91,6 +91,8 @@ pub struct PhysicalState {
     pub net_next: [f64; 2],
     /// Error of the modelled EMF: q along the proportional current, d across it over sqrt(3), volt.
     pub emf_error: [f64; 2],
+    /// Angle per period at the last sample, radians, signed.
+    pub(super) step_angle: f64,
     /// Where the Hall edges stand, as learnt.
     pub(super) learnt: PlacedEdges,
     /// Angle of the reference against the field, electrical turns.

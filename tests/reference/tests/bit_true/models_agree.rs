@@ -135,9 +135,17 @@ fn compare(
         worst.decided_otherwise += 1;
         return;
     }
-    // At an edge the currents may be just as small as those at which the EMF tells the angle.
+    // At an edge the currents may be just as small as those at which the EMF tells the angle: then it moves by a step
+    // or not.
     let learns = variant.spec.loop_options().hall_learning == Switch::On;
-    if learns && ((b.theta - a.theta + PI).rem_euclid(TAU) - PI).abs() > 1e-4 {
+    let apart = ((b.theta - a.theta + PI).rem_euclid(TAU) - PI).abs();
+    if learns && apart > 1e-4 {
+        let of_edges = FRAC_PI_3 / 1024.0;
+        assert!(
+            apart < 1.1 * of_edges,
+            "{} step {step}: {apart} rad",
+            variant.name
+        );
         worst.decided_otherwise += 1;
         return;
     }

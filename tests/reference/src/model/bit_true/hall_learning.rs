@@ -75,7 +75,8 @@ impl<W: Word> Offset<W> {
     /// Whether currents are small, and the error across the shape is not.
     #[inline]
     pub fn tells_angle(&self, [i_a, i_b]: [W; 2], across: W, step_angle: W) -> bool {
-        let is_light = i_a.abs() <= self.small && i_b.abs() <= self.small;
+        let mut currents = [i_a, i_b, i_a + i_b].into_iter();
+        let is_light = currents.all(|i| i.abs() <= self.small);
         is_light && across.abs() > self.per_angle.mul(step_angle.abs())
     }
 }

@@ -102,6 +102,7 @@ impl State<f64> {
             net_prev: volts(self.net_prev),
             net_next: volts(self.net_next),
             emf_error: volts(self.emf_error),
+            step_angle: radians(self.speed.step),
             learnt: PlacedEdges {
                 shifts: self.learnt.shifts.map(radians),
                 all: radians(self.learnt.all),
