@@ -12,7 +12,6 @@ use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
 use serde::Serialize;
 use std::io::{Read, Write};
-use std::ops::Range;
 
 /// Bits of a set-point's fraction.
 const FRACTION: f64 = 65_536.0;
@@ -25,21 +24,53 @@ const DUTIES: [&str; 3] = ["duty_a", "duty_b", "duty_c"];
 /// A log that was replayed, and what became of the drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replayed {
-    /// Names of the columns: state, duties, signals in SI units, every word of the step.
-    pub columns: Vec<String>,
-    /// The periods, with a cell per column.
-    pub periods: Vec<Vec<Cell>>,
-    /// Columns in SI units, the duties among them.
-    pub quantities: Range<usize>,
+    /// Periods.
+    pub periods: usize,
+    /// The duties and the signals in SI units.
+    pub quantities: Vec<Quantity>,
     /// The first period with a fault, from 0, and its fault.
     pub fault: Option<(usize, hexagen::Fault)>,
+}
+
+/// A quantity over a log; none of its values where it never exists.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Name of its column.
+    pub name: &'static str,
+    /// Periods in which it exists.
+    pub periods: usize,
+    /// Least value.
+    pub least: Option<f64>,
+    /// Greatest value.
+    pub greatest: Option<f64>,
+    /// Last value.
+    pub last: Option<f64>,
+}
+
+impl Quantity {
+    const fn new(name: &'static str) -> Self {
+        Self {
+            name,
+            periods: 0,
+            least: None,
+            greatest: None,
+            last: None,
+        }
+    }
+
+    fn take(&mut self, value: f64) {
+        self.periods += 1;
+        self.least = Some(self.least.map_or(value, |least| least.min(value)));
+        self.greatest = Some(self.greatest.map_or(value, |most| most.max(value)));
+        self.last = Some(value);
+    }
 }
 
 /// What a period has in a column.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Cell {
-    /// Nothing: the duty of a leg that is off, a word without control.
+    /// No value: the duty of a leg that is off, or a word that is computed in controlled periods alone.
     Absent,
     /// A word, or the number of the period.
     Word(i64),
@@ -55,58 +86,62 @@ impl Cell {
         let steps = 10_f64.powi(decimals);
         Self::Number((value * steps).round() / steps)
     }
-
-    /// The quantity, if the cell holds one.
-    #[must_use]
-    pub fn number(&self) -> Option<f64> {
-        match self {
-            Self::Number(value) => Some(*value),
-            _ => None,
-        }
-    }
 }
 
-impl Replayed {
-    /// A row of CSV per period.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write_csv(&self, out: impl Write) -> csv::Result<()> {
-        let mut writer = csv::Writer::from_writer(out);
-        writer.write_record(&self.columns)?;
-        for row in &self.periods {
-            writer.serialize(row)?;
-        }
-        Ok(writer.flush()?)
-    }
+/// Names of the columns: state, duties, signals in SI units, every word of the step.
+#[must_use]
+pub fn columns(drive: &Prepared) -> Vec<String> {
+    View::of(drive).columns()
 }
 
-/// Replays a log from the drive's initial state.
+/// Replays a log from the drive's initial state; `take` receives the periods, with a cell per column.
 ///
 /// # Errors
-/// A row that the drive cannot take, by its line.
-pub fn replay(drive: &Prepared, log: impl Read) -> Result<Replayed, LogError> {
+/// A row that the drive cannot take, by its line; an error of `take`.
+pub fn replay(
+    drive: &Prepared,
+    log: impl Read,
+    mut take: impl FnMut(Vec<Cell>) -> csv::Result<()>,
+) -> Result<Replayed, LogError> {
     let view = View::of(drive);
     let mut subject = drive.interpreted();
-    let mut periods = Vec::new();
-    let mut fault = None;
+    let mut replayed = Replayed {
+        periods: 0,
+        quantities: view.quantities(),
+        fault: None,
+    };
     for (period, row) in rows(log)?.enumerate() {
         let (row, line) = row?;
         let sample = sample(drive, &row).map_err(|what| line.error(&what))?;
         give(drive, &mut subject, &row).map_err(|what| line.error(&what))?;
         let legs = subject.step(&sample);
-        periods.push(view.row(period, &subject, legs));
-        fault = fault.or(subject.fault().map(|fault| (period, fault)));
+        let row = view.row(period, &subject, legs);
+        for (quantity, cell) in replayed.quantities.iter_mut().zip(&row[STATE.len()..]) {
+            if let Cell::Number(value) = cell {
+                quantity.take(*value);
+            }
+        }
+        take(row)?;
+        let fault = subject.fault().map(|fault| (period, fault));
+        replayed.fault = replayed.fault.or(fault);
+        replayed.periods += 1;
     }
-    if periods.is_empty() {
+    if replayed.periods == 0 {
         return Err(LogError::empty());
     }
-    Ok(Replayed {
-        columns: view.columns(),
-        periods,
-        quantities: view.quantities(),
-        fault,
-    })
+    Ok(replayed)
+}
+
+/// As [`replay`], with a row of CSV per period.
+///
+/// # Errors
+/// A row that the drive cannot take, by its line; a writer's error.
+pub fn replay_csv(drive: &Prepared, log: impl Read, out: impl Write) -> Result<Replayed, LogError> {
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record(columns(drive))?;
+    let replayed = replay(drive, log, |row| writer.serialize(row))?;
+    writer.flush().map_err(csv::Error::from)?;
+    Ok(replayed)
 }
 
 /// The sample of a row.
@@ -225,8 +260,14 @@ impl<'g> View<'g> {
         all.map(str::to_owned).collect()
     }
 
-    fn quantities(&self) -> Range<usize> {
-        STATE.len()..STATE.len() + DUTIES.len() + self.signals.len()
+    /// The quantities, whose columns follow those of the state.
+    fn quantities(&self) -> Vec<Quantity> {
+        let signals = self.signals.iter().map(|(name, ..)| *name);
+        DUTIES
+            .into_iter()
+            .chain(signals)
+            .map(Quantity::new)
+            .collect()
     }
 
     fn row(&self, period: usize, drive: &Interpreted<'_>, legs: Legs) -> Vec<Cell> {

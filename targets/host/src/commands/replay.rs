@@ -7,7 +7,8 @@ use crate::cli::{
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::engine::Prepared;
-use hexagen_lab::replay::{Cell, Replayed, replay};
+use hexagen_lab::log::LogError;
+use hexagen_lab::replay::{Cell, Quantity, Replayed, columns, replay, replay_csv};
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
 use serde::Serialize;
@@ -55,9 +56,13 @@ struct Tripped {
 }
 
 impl<'a> Outcome<'a> {
-    fn of(drive: &'a Prepared, replayed: &'a Replayed) -> Self {
-        let columns = replayed.columns.iter().map(String::as_str);
-        let periods = replayed.periods.iter();
+    fn of(
+        drive: &'a Prepared,
+        replayed: &Replayed,
+        columns: &'a [String],
+        periods: &'a [Vec<Cell>],
+    ) -> Self {
+        let columns = columns.iter().map(String::as_str);
         Self {
             motor: &drive.motor,
             controller: &drive.variant,
@@ -65,7 +70,7 @@ impl<'a> Outcome<'a> {
                 period,
                 fault: fault.to_string(),
             }),
-            periods: periods
+            periods: (periods.iter())
                 .map(|row| columns.clone().zip(row).collect())
                 .collect(),
         }
@@ -92,33 +97,41 @@ pub fn in_log(path: &Path, error: &dyn std::error::Error) -> Failure {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = options.drive.prepare()?;
     tell_warnings(&drive);
-    let replayed =
-        replay(&drive, open_log(&options.log)?).map_err(|error| in_log(&options.log, &error))?;
+    let log = open_log(&options.log)?;
+    let told = |error: LogError| in_log(&options.log, &error);
     if options.json {
-        return print_json(&Outcome::of(&drive, &replayed));
+        let mut periods = Vec::new();
+        let kept = |row| {
+            periods.push(row);
+            Ok(())
+        };
+        let replayed = replay(&drive, log, kept).map_err(told)?;
+        let columns = columns(&drive);
+        return print_json(&Outcome::of(&drive, &replayed, &columns, &periods));
     }
-    let head = head(&drive, &replayed);
-    if options.all {
-        print_text(&String::from_utf8_lossy(&csv_of(&replayed, options)?))?;
-        note(&head);
-        return Ok(());
+    if !options.all && options.csv.is_none() {
+        let replayed = replay(&drive, log, |_| Ok(())).map_err(told)?;
+        print_summary(&drive, &replayed)?;
+        return print_text("--all prints every word of every period, --csv FILE writes them.");
     }
-    if let Some(csv) = &options.csv {
-        write_file(csv, &csv_of(&replayed, options)?)?;
+    let mut rows = Vec::new();
+    let replayed = replay_csv(&drive, log, &mut rows).map_err(told)?;
+    match &options.csv {
+        Some(csv) => {
+            write_file(csv, &rows)?;
+            print_summary(&drive, &replayed)
+        }
+        None => {
+            print_text(&String::from_utf8_lossy(&rows))?;
+            note(&head(&drive, &replayed));
+            Ok(())
+        }
     }
-    print_text(&paragraph(&head))?;
-    print_table(&table(&replayed))?;
-    if options.csv.is_some() {
-        return Ok(());
-    }
-    print_text("--all prints every word of every period, --csv FILE writes them.")
 }
 
-fn csv_of(replayed: &Replayed, options: &Options) -> Result<Vec<u8>, Failure> {
-    let mut rows = Vec::new();
-    let written = replayed.write_csv(&mut rows);
-    written.map_err(|error| in_log(&options.log, &error))?;
-    Ok(rows)
+fn print_summary(drive: &Prepared, replayed: &Replayed) -> Result<(), Failure> {
+    print_text(&paragraph(&head(drive, replayed)))?;
+    print_table(&table(replayed))
 }
 
 /// What was replayed, and whether the drive tripped.
@@ -131,7 +144,7 @@ fn head(drive: &Prepared, replayed: &Replayed) -> String {
             format!("tripped in period {period}, at {time}: {fault}")
         },
     );
-    let periods = replayed.periods.len();
+    let periods = replayed.periods;
     let time = engineering(periods as f64 * t_s, "s");
     let Prepared { motor, variant, .. } = drive;
     format!("{motor}, {variant}: {periods} periods, {time}; {became}")
@@ -140,15 +153,22 @@ fn head(drive: &Prepared, replayed: &Replayed) -> String {
 /// The quantities over the log: in how many periods they exist, and their range and last value.
 fn table(replayed: &Replayed) -> Table {
     let mut table = Table::listed(["quantity"], ["periods", "least", "greatest", "last"]);
-    for place in replayed.quantities.clone() {
-        let cells = replayed.periods.iter().map(|row| &row[place]);
-        let values: Vec<f64> = cells.filter_map(Cell::number).collect();
-        let least = values.iter().copied().reduce(f64::min);
-        let greatest = values.iter().copied().reduce(f64::max);
-        let [least, greatest, last] =
-            [least, greatest, values.last().copied()].map(|value| significant(value, 4));
-        let name = replayed.columns[place].clone();
-        table.row([name, values.len().to_string(), least, greatest, last]);
+    for quantity in &replayed.quantities {
+        let Quantity {
+            name,
+            periods,
+            least,
+            greatest,
+            last,
+        } = quantity;
+        let [least, greatest, last] = [least, greatest, last].map(|value| significant(*value, 4));
+        table.row([
+            (*name).to_owned(),
+            periods.to_string(),
+            least,
+            greatest,
+            last,
+        ]);
     }
     table
 }
