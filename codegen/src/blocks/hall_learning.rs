@@ -12,9 +12,8 @@
 use super::Lowering;
 use super::measure::Hall;
 use super::rotor::SIXTH;
-use crate::diagnostics::engineering;
 use crate::ir::{Expr, Flag, Interval, Memory, Named as _, Phases, named, pick};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Limit of the displacement of the first and of the second edge, and of what one sector tells: 15 degrees. The third
 /// is minus their sum.
@@ -54,7 +53,7 @@ pub(super) struct HallLearning<'b> {
     steady: Memory<'b>,
 }
 
-/// What all periods tell, for the edge that may be in one.
+/// Values of every period that learning uses at an edge.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'b> {
     /// Last angle of the sector, from its first, with all sensors in their places.
@@ -131,41 +130,30 @@ impl<'b> HallLearning<'b> {
         })
     }
 
-    /// The displacement of all edges, from the error of the EMF; added to the open stage of edges.
+    /// The displacement of all edges behind this one and before it, from the error of the EMF; `limit`: its greatest
+    /// magnitude. Added to the open stage of edges.
     fn learn_offset(
         self,
         l: &Lowering<'b>,
         seen: &Seen<'b>,
         [learns, forward]: [Flag<'b>; 2],
+        limit: Expr<'b>,
     ) -> [Expr<'b>; 2] {
         let (motor, old) = (&l.spec.motor, self.offset.read());
-        // Of an EMF that the angle leads by so much, words of voltage per angle of a period.
+        // What an angle that is off by so much makes of the EMF, volt per electrical rad/s.
         let across = SMALL_ANGLE * motor.emf_constant / f64::from(motor.pole_pairs)
             * 1.5
             * motor.emf_constant
             / (l.spec.torque_constant() * 3_f64.sqrt());
-        let per_angle = across * TAU / 32_f64.exp2() / l.spec.inverter.t_s;
-        let k_across = l.scaled_coefficient(
-            "k_across",
-            per_angle * l.scale.voltage(),
-            32,
-            [
-                "EMF across the shape where the angle is half a degree off, per angle of a period.",
-                &format!("{} per rad/s", engineering(across, "V")),
-            ],
-            ["2 pi/(2^32 Ts) g 2^f_v", "words of voltage per angle"],
-        );
+        let doc =
+            "EMF across the shape where the angle is half a degree off, per angle of a period.";
+        let k_across = l.voltage_by_turn("k_across", across, doc);
         let doc =
             "Greatest phase current at which the EMF tells the angle, a tenth of `max_current`";
         let most = l.ampere_word(SMALL_CURRENT * l.spec.inverter.max_current);
         let small = l.current("i_small", most, doc);
         let doc = "Angle by which all edges are moved at one of them: a 1024th of a sector.";
         let step = l.number("shift_step", OFFSET_STEP, doc);
-        let limit = l.number(
-            "shift_most",
-            MOST,
-            "Limit of a learnt displacement: 15 degrees.",
-        );
         let [a, b] = seen.currents.0;
         named! {
             let is_light_in_c = (a + b).abs().is_at_most(small);
@@ -219,7 +207,7 @@ impl<'b> HallLearning<'b> {
             learn("shift_1_seen", first, is_first),
             learn("shift_2_seen", second, is_second),
         );
-        let [all, all_before] = self.learn_offset(l, seen, [learns, edge.forward]);
+        let [all, all_before] = self.learn_offset(l, seen, [learns, edge.forward], most);
         named! {
             let three = -(one + two);
             let at_edge = pick([is_first, is_second], [one, two, three]);

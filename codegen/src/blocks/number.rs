@@ -8,6 +8,7 @@ use super::Lowering;
 use crate::diagnostics::{engineering, significant};
 use crate::interface::Rounding;
 use crate::ir::{Coefficient, Exact, Expr, Real};
+use std::f64::consts::TAU;
 
 /// Added before a real constant is rounded: far above the f64 error of its computation, so that an
 /// exact tie (or whole number) rounds the same in any order of operations.
@@ -73,6 +74,18 @@ impl<'b> Lowering<'b> {
     ) -> Coefficient {
         let scaled = format!("{formula} = {} {unit}", significant(value));
         self.rounded(name, value, word, [doc, physical], Some(&scaled))
+    }
+
+    /// A coefficient from angles per control period to voltages: `per_speed` in volt per electrical rad/s.
+    pub fn voltage_by_turn(&self, name: &'static str, per_speed: f64, doc: &str) -> Coefficient {
+        let per_angle = per_speed * TAU / 32_f64.exp2() / self.spec.inverter.t_s;
+        self.scaled_coefficient(
+            name,
+            per_angle * self.scale.voltage(),
+            32,
+            [doc, &format!("{} per rad/s", engineering(per_speed, "V"))],
+            ["2 pi/(2^32 Ts) g 2^f_v", "words of voltage per angle"],
+        )
     }
 
     /// A coefficient from currents to voltages: `ohm` in V/A, shown in `unit` as `symbol`.

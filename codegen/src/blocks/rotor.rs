@@ -146,7 +146,7 @@ struct Edges<'b> {
     step_angle: Expr<'b>,
     /// Ticks since the last edge.
     age: Expr<'b>,
-    /// Where the sensor of the last edge stands, and how wide the sector is; where that is learnt.
+    /// Where the sector begins and how wide it is, with `hall_learning` only.
     placed: Option<Placed<'b>>,
 }
 

@@ -8,8 +8,9 @@ use crate::spec::{RotorSensing, Spec};
 /// Whether the intervals tell the speed's rise: between opposite edges, which are a sensor's own, the rotor
 /// turns by half a turn wherever the sensor stands. At samples the intervals are too coarse.
 pub(super) fn tells_rise(spec: &Spec) -> bool {
-    matches!(spec.inverter.rotor_sensing, RotorSensing::TimedHalls { .. })
-        && spec.motor.has_opposite_edges()
+    let angles = spec.motor.hall_angles;
+    let opposite = |k: usize| (angles[k + 3] - angles[k] - 180.0).abs() < 1e-6;
+    matches!(spec.inverter.rotor_sensing, RotorSensing::TimedHalls { .. }) && (0..3).all(opposite)
 }
 
 /// The speed in the middle of the coming sector over that in the middle of the last turn, less 1, over the

@@ -205,12 +205,6 @@ impl MotorSpec {
         self.hall_angles == HALL_ANGLES
     }
 
-    /// Whether each Hall edge lies half a turn from the third one after it.
-    pub fn has_opposite_edges(&self) -> bool {
-        let angles = self.hall_angles;
-        (0..3).all(|k| (angles[k + 3] - angles[k] - 180.0).abs() < 1e-6)
-    }
-
     /// Width of the widest sector over 60 degrees.
     pub fn widest_sector(&self) -> f64 {
         let [_, widest] = extreme_sectors(&self.hall_angles);

@@ -127,17 +127,8 @@ impl<'b> ResidualWatch<'b> {
             "Residual allowed per set-point.",
             &format!("1.6 R/K = {}", significant(per_ampere / self.gain)),
         );
-        let per_angle = per_speed * TAU / 32_f64.exp2() / l.spec.inverter.t_s;
-        let by_speed = l.scaled_coefficient(
-            "k_residual_w",
-            per_angle * l.scale.voltage(),
-            32,
-            [
-                "Residual allowed per angle of a period.",
-                &format!("{} per rad/s", engineering(per_speed, "V")),
-            ],
-            ["2 pi/(2^32 Ts) g 2^f_v", "words of voltage per angle"],
-        );
+        let doc = "Residual allowed per angle of a period.";
+        let by_speed = l.voltage_by_turn("k_residual_w", per_speed, doc);
         [by_current, by_speed]
     }
 

@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 /// period each, could be read.
 const LEAST_DUTY: f64 = 0.5;
 
-/// PWM frequencies that are worth a word, Hz: boards switch no faster, and below there is no smooth current.
+/// PWM frequencies that a remedy may offer, Hz: boards switch no faster, and below them the current is not smooth.
 const F_PWM: RangeInclusive<f64> = 2e3..=100e3;
 
 /// Accepted: a window and a least low time that leave half of the PWM period, and legs of which no off one need be read.

@@ -598,7 +598,8 @@ fn read_residual_timeout(
     Some(periods as u32)
 }
 
-/// Whether the places of the Hall sensors are learnt; what times the edges is checked with the sensors.
+/// Whether the drive learns where the Hall sensors stand. That a timer measures their edges is checked behind the
+/// options.
 fn read_hall_learning(reader: &Reader, emf: Option<EmfSource>, errors: &mut Collector) -> bool {
     let is_on = reader.switch(errors, HALL_LEARNING) == Some(true);
     // A law that does not use the EMF refuses the option itself.
