@@ -116,17 +116,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     let mut rows = Vec::new();
     let replayed = replay_csv(&drive, log, &mut rows).map_err(told)?;
-    match &options.csv {
-        Some(csv) => {
-            write_file(csv, &rows)?;
-            print_summary(&drive, &replayed)
-        }
-        None => {
-            print_text(&String::from_utf8_lossy(&rows))?;
-            note(&head(&drive, &replayed));
-            Ok(())
-        }
+    if let Some(csv) = &options.csv {
+        write_file(csv, &rows)?;
+        return print_summary(&drive, &replayed);
     }
+    print_text(&String::from_utf8_lossy(&rows))?;
+    note(&head(&drive, &replayed));
+    Ok(())
 }
 
 fn print_summary(drive: &Prepared, replayed: &Replayed) -> Result<(), Failure> {
