@@ -77,6 +77,12 @@ int32_t hexagen_thousandths(int32_t number)
     return limited * 65 + hexagen_mul_round(rest, limited, 31);
 }
 
+int32_t hexagen_scaled_torque(int32_t bits, int32_t ratio)
+{
+    const int32_t most = INT32_C(1) << 30;
+    return hexagen_mul_round(ratio, hexagen_clamp(bits, -most, most), 28);
+}
+
 int32_t hexagen_whole(int32_t number)
 {
     if (number > INT32_C(32767)) {

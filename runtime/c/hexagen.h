@@ -431,6 +431,12 @@ static inline int32_t hexagen_angle_fraction(int32_t angle, uint32_t segments)
     return hexagen_wrap(((uint32_t)angle * segments) ^ UINT32_C(0x80000000));
 }
 
+/**
+ * A torque, a number with 16 fraction bits, times a ratio with 28 fraction bits, at most 1.5: stated over
+ * learnt torque constant. The torque saturates at 16384 Nm.
+ */
+int32_t hexagen_scaled_torque(int32_t bits, int32_t ratio);
+
 /** Thousandths as a number with 16 fraction bits, rounded to the nearest; saturates. */
 int32_t hexagen_thousandths(int32_t number);
 

@@ -74,6 +74,18 @@ pub fn mul_round_without_carry(coefficient: Word, signal: Word, shift: u32) -> W
     Word(product.wrapping_shr(shift) as i32) + (below & 1) as i32
 }
 
+/// A torque, bits of a number with 16 fraction bits, times a ratio with 28 fraction bits, at most 1.5: stated over learnt
+/// torque constant. The torque saturates at 16384 Nm.
+#[inline]
+#[must_use]
+pub fn scaled_torque(bits: Word, ratio: Word) -> Word {
+    const MOST: i32 = 1 << 30;
+    mul_round(ratio, bits.clamp(-MOST, MOST), TORQUE_RATIO_BITS)
+}
+
+/// Fraction bits of a learnt ratio.
+pub const TORQUE_RATIO_BITS: u32 = 28;
+
 /// [`mul_round`] for products that fit 32 bits including their rounding. `shift` is 1 to 30.
 #[inline(always)]
 #[must_use]

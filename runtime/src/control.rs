@@ -95,6 +95,10 @@ pub trait Control: Sized + 'static {
     /// that field.
     const IS_TOO_FAST: Option<fn(&Self::State) -> bool> = None;
 
+    /// Reads from the law's state the stated over the learnt torque constant, 28 fraction bits. The macro sets it with
+    /// `torque_learning: on`.
+    const TORQUE_RATIO: Option<fn(&Self::State) -> Word> = None;
+
     /// Set-point word of a current: bits of a number with 16 fraction bits, ampere.
     fn current(bits: Word) -> Word;
     /// Set-point word of a torque: bits of a number with 16 fraction bits, newton metres.

@@ -160,6 +160,7 @@ impl<C: Control> Drive<C> {
         for (index, word) in law.iter().enumerate() {
             self.core.law.set_word(index, *word);
         }
+        publish_torque(&self.set_point, &self.core.law);
         self.control().publish();
     }
 }
@@ -240,6 +241,7 @@ impl<C: Control> ControlLoop<'_, C> {
         if sensors.third.is_some() {
             core.supervisor.follow_command(sensors, command.on());
         }
+        publish_torque(set_point, law);
         if set_point.signals.is_asked() {
             let on = command.on();
             set_point.signals.answer(checked, on, observation);
@@ -257,6 +259,7 @@ impl<C: Control> ControlLoop<'_, C> {
     pub fn reset(&mut self) {
         if self.core.supervisor.reset(&C::LIMITS, &C::SENSORS) {
             self.core.law = C::State::INITIAL;
+            publish_torque(self.set_point, &self.core.law);
             self.set_point.trip.forget();
             self.set_point.clear();
         }
@@ -380,12 +383,21 @@ fn at_rest<C: Control>(
     publish(set_point, core);
     let rotor = C::track(&mut core.law, &unfit.checked);
     C::rest(&mut core.law, &unfit.checked, rotor);
+    publish_torque(set_point, &core.law);
     C::Command::at_rest(state)
 }
 
 /// Publishes the status for the set-point's half. A step that passes all checks does not change it.
 fn publish<C: Control>(set_point: &SetPoint<C>, core: &Core<C>) {
     set_point.status.store(core.supervisor.status_bits().into());
+}
+
+/// Tells the set-point's half the learnt torque constant.
+#[inline]
+fn publish_torque<C: Control>(set_point: &SetPoint<C>, law: &C::State) {
+    if let Some(ratio) = C::TORQUE_RATIO {
+        set_point.torque_ratio.store(ratio(law));
+    }
 }
 
 /// Trips a drive, unless it is tripped already, for what its sample does not show.

@@ -1,6 +1,6 @@
 //! The main program's half of a drive.
 
-use crate::arith::{Word, mul_round};
+use crate::arith::{TORQUE_RATIO_BITS, Word, mul_round, scaled_torque};
 use crate::bus::Bus;
 use crate::control::Words;
 use crate::shared::SharedWord;
@@ -23,6 +23,8 @@ pub struct SetPoint<C: Control> {
     pub(crate) status: SharedWord,
     pub(crate) signals: Port,
     pub(crate) trip: TripRecord<C>,
+    /// Stated over learnt torque constant, with `torque_learning: on` only.
+    pub(crate) torque_ratio: SharedWord,
 }
 
 impl<C: Control> SetPoint<C> {
@@ -36,6 +38,7 @@ impl<C: Control> SetPoint<C> {
             status: SharedWord::new(Word(Supervisor::new(&C::LIMITS, &C::SENSORS).status_bits())),
             signals: Port::new(),
             trip: TripRecord::new(),
+            torque_ratio: SharedWord::new(Word(1 << TORQUE_RATIO_BITS)),
         }
     }
 
@@ -61,9 +64,16 @@ impl<C: Control> SetPoint<C> {
 
     /// Sets the torque in newton metres; sign, saturation and speed loop as with
     /// [`set_current`](Self::set_current).
+    ///
+    /// With `torque_learning: on` the torque constant learnt so far makes the current: a program that sets the torque
+    /// once uses what was known then.
     #[inline]
     pub fn set_torque(&self, torque: I16F16) {
-        self.words.current.store(C::torque(Word(torque.to_bits())));
+        let mut bits = Word(torque.to_bits());
+        if C::TORQUE_RATIO.is_some() {
+            bits = scaled_torque(bits, self.torque_ratio.load());
+        }
+        self.words.current.store(C::torque(bits));
     }
 
     /// [`set_torque`](Self::set_torque) in millinewton metres.
@@ -117,6 +127,17 @@ impl<C: Control> SetPoint<C> {
     #[must_use]
     pub fn status(&self) -> Status {
         Status::from_bits(self.status.load().0, self.words.bus.is_stale())
+    }
+
+    /// The learnt torque constant over the stated one, two thirds to 1.5; 1 before anything is learnt, behind a
+    /// `reset()`, and without `torque_learning: on`.
+    #[must_use]
+    pub fn torque_constant_ratio(&self) -> I16F16 {
+        // 2^16/ratio with 15 of the ratio's fraction bits, which are enough for 16 of the quotient.
+        const SHIFT: u32 = 13;
+        let ratio = self.torque_ratio.load() >> SHIFT;
+        let quotient = (1_i32 << 30).checked_div(ratio.0).unwrap_or_default();
+        I16F16::from_bits(quotient << 1)
     }
 
     /// Largest torque against a direction of rotation, 0 for none; with a speed loop speed 0.

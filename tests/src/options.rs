@@ -166,6 +166,13 @@ const SHARED: &[Row] = &[
                     ("controller", "hall_learning", "\"on\""),
                 ],
             ),
+            (
+                "torque",
+                &[
+                    ("controller", "emf", "\"observer\""),
+                    ("controller", "torque_learning", "\"on\""),
+                ],
+            ),
         ],
     ),
     (

@@ -21,6 +21,7 @@ mod slew;
 mod speed;
 mod speed_ramp;
 mod speed_rise;
+mod torque_learning;
 mod weakening;
 
 pub use angle::AngleWords;
@@ -44,6 +45,7 @@ pub use over_speed::{OVER_SPEED_COUNT, OVER_SPEED_EDGES};
 pub use rotor::{Rotor, RotorWords, advanced_sector, direction_word, sense_direction};
 pub use slew::SlewLimit;
 pub use speed::{Regulated, SpeedRegulator};
+pub use torque_learning::{TORQUE_RATIO, TorqueLearning};
 pub use weakening::{FieldWeakening, Weakened};
 
 use crate::diagnostics::engineering;

@@ -5,7 +5,7 @@ use super::accuracy::accuracy_notes;
 use super::constants::{constants, ratios};
 use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
-use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale};
+use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale, TORQUE_RATIO};
 use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
     AngleSensor, Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors,
@@ -57,6 +57,7 @@ pub fn interface(
             word: OVER_SPEED_COUNT,
             most: OVER_SPEED_EDGES,
         }),
+        torque_ratio: (spec.controller.common().torque_learning).then_some(TORQUE_RATIO),
         limits: limits(spec, scaled.scale),
         units: units(spec, scaled.scale),
     }

@@ -90,6 +90,14 @@ impl EmfShape {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
+    /// Mean of 1/s^2, s the length of the unit EMF in the plane, over 600 angles of a tenth of a degree.
+    pub fn mean_inverse_square(self) -> f64 {
+        const ANGLES: u32 = 600;
+        let angles = (0..ANGLES).map(|step| f64::from(step).to_radians() / 10.0);
+        let inverses = angles.map(|theta_e| self.squared_length(theta_e).recip());
+        inverses.sum::<f64>() / f64::from(ANGLES)
+    }
+
     /// Amplitude of the fundamental.
     pub fn fundamental(self) -> f64 {
         match self {

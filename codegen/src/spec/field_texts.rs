@@ -33,8 +33,8 @@ pub(crate) fn section_texts(section: &str) -> Vec<FieldText> {
 
 /// The options that several kinds of controllers share.
 pub(crate) fn shared_texts() -> Vec<FieldText> {
-    let rows = [common::LOOP, common::COMMUTATION];
-    let rules = rows.into_iter().flatten().map(|row| &row.rule);
+    let rows = common::SHARED.into_iter().flat_map(|(_, rows)| rows);
+    let rules = rows.map(|row| &row.rule);
     rules.map(|rule| option_text("controller", rule)).collect()
 }
 

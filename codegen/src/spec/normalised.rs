@@ -313,6 +313,7 @@ mod tests {
                     residual_periods: None,
                     field_weakening: false,
                     hall_learning: false,
+                    torque_learning: false,
                 },
             }),
         }

@@ -26,14 +26,32 @@ pub fn help() -> String {
         );
         text.extend((kind.own)().into_iter().map(line));
     }
-    text.push_str("  all, the commutation options without pi-pwm:\n");
-    text.extend(shared().map(line));
+    for (_, rules) in shared() {
+        let takers = takers(&rules);
+        let takers = if takers.len() == KINDS.len() {
+            "all".to_owned()
+        } else {
+            takers.join(", ")
+        };
+        text.extend([format!("  {takers}:\n")]);
+        text.extend(rules.into_iter().map(line));
+    }
     text
 }
 
-fn shared() -> impl Iterator<Item = &'static Rule> {
-    let rows = [controller::common::LOOP, controller::common::COMMUTATION];
-    rows.into_iter().flatten().map(|row| &row.rule)
+/// The groups of shared options, with what each is for.
+fn shared() -> impl Iterator<Item = (&'static str, Vec<&'static Rule>)> {
+    let groups = controller::common::SHARED.into_iter();
+    groups.map(|(what, rows)| (what, rows.iter().map(|row| &row.rule).collect()))
+}
+
+/// The controllers that take all of these.
+fn takers(rules: &[&Rule]) -> Vec<&'static str> {
+    let takes = |kind: &&controller::Kind| {
+        let names: Vec<&str> = kind.rules().iter().map(|rule| rule.name).collect();
+        rules.iter().all(|rule| names.contains(&rule.name))
+    };
+    KINDS.iter().filter(takes).map(|kind| kind.name).collect()
 }
 
 /// The words with their meanings, or the range.
@@ -108,7 +126,7 @@ fn plain(markdown: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{KINDS, controller, default, sentence, shared, values};
+    use super::{KINDS, controller, default, help, sentence, shared, takers, values};
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
     use crate::spec::rule::{Kind, Preset, Rule};
@@ -118,22 +136,17 @@ mod tests {
 
     /// The reference page of the options, in Markdown: `options.md`.
     fn reference() -> String {
-        let common = controller::common::LOOP.iter().map(|row| &row.rule);
-        let mut text = String::from("## controller\n\nOptions that all controllers take:\n\n");
-        text.push_str(&table(common));
-        let commutation = controller::common::COMMUTATION.iter().map(|row| &row.rule);
-        let takers = KINDS.iter().filter(|kind| {
-            let names = kind.rules().into_iter().map(|rule| rule.name);
-            commutation
-                .clone()
-                .all(|rule| names.clone().any(|name| name == rule.name))
-        });
-        let takers: Vec<String> = takers.map(|kind| format!("`{}`", kind.name)).collect();
-        text.extend([format!(
-            "\nOptions of commutations, which {} take:\n\n",
-            takers.join(", ")
-        )]);
-        text.push_str(&table(commutation));
+        let mut text = String::from("## controller\n");
+        for (what, rules) in shared() {
+            let takers = takers(&rules);
+            let takers = if takers.len() == KINDS.len() {
+                "all controllers".to_owned()
+            } else {
+                format!("`{}`", takers.join("`, `"))
+            };
+            text.extend([format!("\n{what} that {takers} take:\n\n")]);
+            text.push_str(&table(rules));
+        }
         for kind in &KINDS {
             text.extend([format!(
                 "\n### controller: {}\n\n{}.\n",
@@ -150,7 +163,8 @@ mod tests {
         let own = KINDS
             .iter()
             .flat_map(|kind| (kind.own)().into_iter().map(|rule| (kind.name, rule)));
-        let all = shared().map(|rule| ("all that take it", rule)).chain(own);
+        let rules = shared().flat_map(|(_, rules)| rules);
+        let all = rules.map(|rule| ("all that take it", rule)).chain(own);
         text.extend(all.filter_map(|(kind, rule)| chosen(kind, rule)));
         text
     }
@@ -199,6 +213,15 @@ mod tests {
             page == reference(),
             "run this test with INSTA_UPDATE=always, and look at the difference"
         );
+    }
+
+    #[test]
+    fn every_option_is_in_the_help_and_on_the_page() {
+        for rule in KINDS.iter().flat_map(controller::Kind::rules) {
+            let in_help = help().contains(&format!("\n    {}=", rule.name));
+            let on_page = reference().contains(&format!("\n| `{}` |", rule.name));
+            assert!(in_help && on_page, "{}", rule.name);
+        }
     }
 
     #[test]

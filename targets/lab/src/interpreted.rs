@@ -1,6 +1,7 @@
 //! The generator's interpreter as a drive.
 
 use crate::{Inputs, angle, limits, sensors};
+use hexagen::arith::{Word, scaled_torque};
 use hexagen::{
     AngleSensor, Checked, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor,
 };
@@ -25,6 +26,8 @@ pub struct Interpreted<'g> {
     bus: Option<BusWatch>,
     /// What the law watches itself: index of its state word, the count at which it trips, its fault.
     watches: [Option<(usize, i32, Fault)>; 2],
+    /// Index of the state word of the learnt torque constant.
+    torque_ratio: Option<usize>,
     places: Places,
     escape: Arc<OnceLock<Escape>>,
 }
@@ -115,9 +118,9 @@ impl<'g> Interpreted<'g> {
             ]
             .map(|(watch, fault)| {
                 let Watch { word, most } = watch?;
-                let place = program.states.iter().position(|state| state.name == word);
-                Some((place.expect("the word of a watch"), most, fault))
+                Some((place_of(program, word), most, fault))
             }),
+            torque_ratio: interface.torque_ratio.map(|word| place_of(program, word)),
             places: Places::of(program).expect("the program of a drive"),
             escape: Arc::default(),
         }
@@ -199,6 +202,12 @@ impl<'g> Interpreted<'g> {
     }
 }
 
+/// Index of a state word that the interface names.
+fn place_of(program: &Program, word: &str) -> usize {
+    let place = program.states.iter().position(|state| state.name == word);
+    place.expect("a word of the state")
+}
+
 impl Subject for Interpreted<'_> {
     fn step(&mut self, sample: &Sample) -> Legs {
         if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
@@ -220,7 +229,9 @@ impl Subject for Interpreted<'_> {
     }
 
     fn set_torque(&mut self, bits: i32) {
-        self.set(Setter::Torque, bits);
+        let learnt = self.torque_ratio.map(|place| self.machine.state[place]);
+        let scaled = learnt.map(|ratio| scaled_torque(Word(bits), Word(ratio)).0);
+        self.set(Setter::Torque, scaled.unwrap_or(bits));
     }
 
     fn set_speed(&mut self, bits: i32) {

@@ -126,6 +126,15 @@ const VARIANTS: [(&str, &str, Fields); 29] = [
         )],
     ),
     (
+        "pdcc.torque-learning",
+        "pdcc:torque_learning=on",
+        &[
+            ("inverter", "v_bus", "measured"),
+            ("inverter", "bus_adc_bits", "12"),
+            ("inverter", "bus_adc_range", "65 V"),
+        ],
+    ),
+    (
         "pdcc.over-speed",
         "pdcc:reference=quasi_square,emf=estimated",
         &[("inverter", "over_speed", "2600 rpm")],

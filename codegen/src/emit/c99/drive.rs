@@ -437,6 +437,13 @@ impl Drive<'_> {
         let mut text = setter.doc.clone();
         let code = emit_setter(self.program, setter, self.names);
         let mut body = code.body;
+        if let (Setter::Torque, Some(ratio)) = (set, self.interface.torque_ratio) {
+            text.extend(doc(&[
+                "The torque constant learnt so far makes the current.",
+            ]));
+            let scale = format!("bits = hexagen_scaled_torque(bits, drive->state.{ratio});");
+            body = lines(&[&scale]) + &body;
+        }
         let field = match set {
             Setter::Current | Setter::Torque => Some("current"),
             Setter::Speed => Some("speed"),

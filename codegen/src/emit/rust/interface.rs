@@ -63,6 +63,7 @@ impl Types<'_> {
             formats,
             residual,
             over_speed,
+            torque_ratio,
             limits,
             units,
             ..
@@ -93,6 +94,12 @@ impl Types<'_> {
         };
         let residual = watch(quote!(HAS_LOST_CURRENTS), *residual);
         let over_speed = watch(quote!(IS_TOO_FAST), *over_speed);
+        let torque_ratio = torque_ratio.map(|word| {
+            let word = snake(word);
+            quote! {
+                const TORQUE_RATIO: Option<fn(&State) -> Word> = Some(|state| state.#word);
+            }
+        });
         let [ampere, volt, volt_per_count, rpm] =
             [units.ampere, units.volt, units.volt_per_count, units.rpm].map(unit);
         let sectors = units
@@ -153,6 +160,7 @@ impl Types<'_> {
                 #told_words
                 #residual
                 #over_speed
+                #torque_ratio
 
                 #current
                 #torque

@@ -20,8 +20,8 @@ pub(super) struct Emf<'b> {
     pub present: Option<Phases<'b>>,
     /// Error of the modelled EMF, q and d.
     pub error: Option<[Expr<'b>; 2]>,
-    /// Count of the residual watch, and its new value.
-    pub residual_count: Option<(Memory<'b>, Expr<'b>)>,
+    /// Counts of the residual watch and of periods that tell the torque constant, and their new values.
+    pub counts: [Option<(Memory<'b>, Expr<'b>)>; 2],
 }
 
 /// Shift of the sums of products that correct the error: 1/16 of a sum is 3/32 of a component.
@@ -62,7 +62,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                     target: model.target,
                     present: Some(model.present),
                     error: None,
-                    residual_count: None,
+                    counts: [None; 2],
                 });
             }
             (Some((rotor, Some(shape))), EmfSource::Observer) => {
@@ -77,7 +77,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             target,
             present: Some(present),
             error: None,
-            residual_count: None,
+            counts: [None; 2],
         })
     }
 
@@ -169,7 +169,10 @@ impl<'b> CurrentLoop<'_, 'b> {
         l.state_volts("e_error_q", q, doc);
         l.state_volts("e_error_d", d, doc);
         let watch = words.residual;
-        let residual_count = watch.map(|watch| watch.watch(l, residual, [q, d], rotor, set_point));
+        let counts = [
+            watch.map(|watch| watch.watch(l, residual, [q, d], rotor, set_point)),
+            (words.torque).map(|learning| learning.follow(l, rotor, set_point)),
+        ];
         let doc = "EMF over the target period: the modelled one plus its error, which turns with the rotor.";
         l.b.stage("observe_emf", &[doc]);
         let ([along, across], shift) = lifted([("q_lifted", q), ("d_lifted", d)]);
@@ -191,7 +194,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             target: e,
             present: expected.or_else(|| words.net_next.is_none().then_some(e)),
             error: Some([q, d]),
-            residual_count,
+            counts,
         })
     }
 

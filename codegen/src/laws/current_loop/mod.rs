@@ -101,8 +101,9 @@ pub struct Front<'b> {
     pub net: Option<Phases<'b>>,
     /// Error of the modelled EMF, q and d; with an observer only.
     pub emf_error: Option<[Expr<'b>; 2]>,
-    /// Count of the residual watch, and its new value; with a `residual_timeout` only.
-    pub residual_count: Option<(Memory<'b>, Expr<'b>)>,
+    /// Counts of the residual watch and of periods that tell the torque constant, and their new values; with
+    /// these options only.
+    pub counts: [Option<(Memory<'b>, Expr<'b>)>; 2],
     /// How far the reference is turned against the field; with field weakening only.
     pub weakened: Option<Weakened<'b>>,
     /// The folded words; with a held EMF only.
@@ -250,7 +251,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             e_now,
             net,
             emf_error: emf.and_then(|emf| emf.error),
-            residual_count: emf.and_then(|emf| emf.residual_count),
+            counts: emf.map_or([None; 2], |emf| emf.counts),
             weakened,
             held,
             of_set_point: demand.words,
@@ -308,23 +309,23 @@ impl<'b> CurrentLoop<'_, 'b> {
             kept: None,
             ahead: None,
         };
-        if let Some((words, angle)) = words.angle.zip(sample.angle) {
-            let rotor = words.track(l, angle);
+        if let Some((speed, angle)) = words.angle.zip(sample.angle) {
+            let rotor = speed.track(l, angle);
             if let Some(hall) = hall {
                 hall.sector_prev.set(hall.sector);
             }
-            self.follow_rotor(&mut tracked, rotor);
+            self.follow_rotor(&mut tracked, words, rotor);
             return tracked;
         }
         let Some(hall) = hall else {
             return tracked;
         };
-        if let Some(rotor) = words.rotor {
+        if let Some(timing) = words.rotor {
             // With an angle, edges are evaluated in every period.
             let across = words.emf_error.map(|[_, across]| across);
-            let rotor = rotor.track(l, &hall, &tracked.sample, across);
+            let rotor = timing.track(l, &hall, &tracked.sample, across);
             hall.sector_prev.set(hall.sector);
-            self.follow_rotor(&mut tracked, rotor);
+            self.follow_rotor(&mut tracked, words, rotor);
         } else if let Some(direction) = words.direction {
             // Without an angle the commutation begins in the stage that senses the direction, at a
             // rare edge.
@@ -338,13 +339,16 @@ impl<'b> CurrentLoop<'_, 'b> {
     }
 
     /// What the rotor's angle and speed tell.
-    fn follow_rotor(&self, tracked: &mut Tracked<'b>, rotor: Rotor<'b>) {
+    fn follow_rotor(&self, tracked: &mut Tracked<'b>, words: &Words<'b>, rotor: Rotor<'b>) {
         let (l, advance) = (self.l, self.options.advance);
         if advance > 0.0 {
             let sector = tracked.sector;
             let seen = sector.unwrap_or_else(|| sector_of(l, &tracked.sample));
             tracked.sector = Some(seen);
             tracked.ahead = Some(advanced_sector(l, advance, seen, &rotor));
+        }
+        if let Some((learning, [along, _])) = words.torque.zip(words.emf_error) {
+            learning.learn(l, &rotor, along.read());
         }
         tracked.direction = Some(rotor.direction);
         tracked.rotor = Some(rotor);
@@ -523,7 +527,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         if let Some(limit) = words.bus_current {
             remembered.extend(limit.follow(self.l, front.currents, command));
         }
-        remembered.extend(front.residual_count);
+        remembered.extend(front.counts.into_iter().flatten());
         if let (Some(commutation), Some(rule)) = (front.commutation, words.pair) {
             remembered.extend(rule.sector_prev.map(|word| (word, front.sector)));
             remembered.push((rule.left, commutation.left));

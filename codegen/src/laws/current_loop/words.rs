@@ -5,7 +5,7 @@ use super::residual::ResidualWatch;
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{
     AngleWords, BusCurrentLimit, BusFade, CommutationRule, FieldWeakening, RotorWords, SlewLimit,
-    SpeedRegulator, direction_word, sector_word,
+    SpeedRegulator, TorqueLearning, direction_word, sector_word,
 };
 use crate::ir::{Interval, Memory};
 use crate::spec::{EmfSource, Reference};
@@ -90,6 +90,8 @@ pub struct Words<'b> {
     pub weakening: Option<FieldWeakening<'b>>,
     /// Residual watch.
     pub residual: Option<ResidualWatch<'b>>,
+    /// Learning of the torque constant.
+    pub torque: Option<TorqueLearning<'b>>,
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
@@ -187,6 +189,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             weakening: (options.field_weakening).then(|| FieldWeakening::new(l, set_point)),
             residual: (options.residual_periods)
                 .map(|periods| ResidualWatch::new(l, periods, set_point)),
+            torque: (options.torque_learning).then(|| TorqueLearning::new(l, set_point)),
         }
     }
 

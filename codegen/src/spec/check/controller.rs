@@ -5,11 +5,13 @@ use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::{Collector, Location, catalogue};
 use crate::spec::ast::{Field, Section, Value};
-use crate::spec::controller::common::{HALL_LEARNING, HallEdges, Surroundings, refuse};
+use crate::spec::controller::common::{
+    FIELD_WEAKENING, HALL_LEARNING, HallEdges, Surroundings, TORQUE_LEARNING, refuse,
+};
 use crate::spec::controller::{self, KINDS, Kind};
 use crate::spec::reader::Reader;
 use crate::spec::schema;
-use crate::spec::{ControllerSpec, RotorSensing, RotorSource};
+use crate::spec::{BusSource, ControllerSpec, RotorSensing, RotorSource};
 use std::f64::consts::TAU;
 
 /// Options that are known but not available in this version.
@@ -70,6 +72,11 @@ pub(super) fn read(
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = (kind.read)(&reader, &surroundings, errors);
+    if let Some(spec) = &controller
+        && spec.common().torque_learning
+    {
+        check_torque_learning(&reader, inverter, spec.common().field_weakening, errors);
+    }
     angle::refuse_halls(&reader, motor, &["hall_capture", HALL_LEARNING], errors);
     let sensing = match motor.rotor {
         Some(RotorSource::Halls) => {
@@ -92,6 +99,29 @@ fn check_learning(reader: &Reader, capture: Option<RotorSensing>, errors: &mut C
             reader,
             HALL_LEARNING,
             ["hall_capture", "sampled"],
+            why,
+            errors,
+        );
+    }
+}
+
+/// The EMF at no torque tells the torque constant where the bus is known, and no current flows against the field.
+fn check_torque_learning(
+    reader: &Reader,
+    inverter: &Inverter,
+    weakens: bool,
+    errors: &mut Collector,
+) {
+    if inverter.bus == Some(BusSource::Fixed) {
+        let why = "a bus that is off its stated voltage would be taken for another torque constant";
+        refuse(reader, TORQUE_LEARNING, ["v_bus", "fixed"], why, errors);
+    }
+    if weakens {
+        let why = "its current against the field looks like another torque constant";
+        refuse(
+            reader,
+            TORQUE_LEARNING,
+            [FIELD_WEAKENING, "on"],
             why,
             errors,
         );

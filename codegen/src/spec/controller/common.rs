@@ -115,7 +115,16 @@ pub struct LoopOptions {
     pub field_weakening: bool,
     /// Whether the places of the Hall sensors are learnt.
     pub hall_learning: bool,
+    /// Whether the torque constant is learnt.
+    pub torque_learning: bool,
 }
+
+/// Every group of options that several controllers take, and what it is for.
+pub(crate) const SHARED: [(&str, &[Row<LoopOptions>]); 3] = [
+    ("Options", LOOP),
+    ("Options where a voltage is limited", LIMITED),
+    ("Options of commutations", COMMUTATION),
+];
 
 /// The choice of controller.
 pub(crate) const KIND: Rule = rule::word("kind", "pdcc");
@@ -246,10 +255,19 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .about("Places of the Hall sensors, learnt while the rotor turns steadily: how the three stand against each other, and at up to a tenth of `max_current` how all stand against the EMF, up to 15 electrical degrees, until `reset()`; only with `emf: observer` and `hall_capture: timer`"),
         |options| if_on(options.hall_learning),
     ),
+    Row::of(
+        rule::choice::<bool>(TORQUE_LEARNING, "on")
+            .preset("off")
+            .about("Torque constant, learnt while the rotor turns at a set-point near 0, from two thirds to 1.5 times the stated one, until `reset()`; `set_torque` uses it. Only with `emf: observer` and a measured bus"),
+        |options| if_on(options.torque_learning),
+    ),
 ];
 
 /// Option of [`LOOP`].
 pub(crate) const HALL_LEARNING: &str = "hall_learning";
+
+/// Option of [`LOOP`].
+pub(crate) const TORQUE_LEARNING: &str = "torque_learning";
 
 /// Options of the controllers that limit a voltage.
 pub(crate) const LIMITED: &[Row<LoopOptions>] = &[Row::of(
@@ -444,7 +462,20 @@ pub(crate) fn read_common(
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
     let emf_in_use = traits.uses_emf.then_some(emf);
     let residual_periods = read_residual_timeout(reader, surroundings, emf_in_use, errors);
-    let hall_learning = read_hall_learning(reader, emf_in_use, errors);
+    let hall_learning = read_learning(
+        reader,
+        HALL_LEARNING,
+        emf_in_use,
+        "only `emf: observer` tells how all sensors stand against the EMF",
+        errors,
+    );
+    let torque_learning = read_learning(
+        reader,
+        TORQUE_LEARNING,
+        emf_in_use,
+        "only `emf: observer` tells how far the EMF is from the stated one",
+        errors,
+    );
     let field_weakening =
         traits.pulses_three_legs && read_field_weakening(reader, reference, errors);
 
@@ -478,6 +509,7 @@ pub(crate) fn read_common(
         residual_periods,
         field_weakening,
         hall_learning,
+        torque_learning,
     })
 }
 
@@ -598,17 +630,22 @@ fn read_residual_timeout(
     Some(periods as u32)
 }
 
-/// Whether the drive learns where the Hall sensors stand. That a timer measures their edges is checked behind the
-/// options.
-fn read_hall_learning(reader: &Reader, emf: Option<EmfSource>, errors: &mut Collector) -> bool {
-    let is_on = reader.switch(errors, HALL_LEARNING) == Some(true);
+/// Whether the drive learns by the observer; `why`: what it tells. What else it needs of sensors and bus is checked
+/// behind the options.
+fn read_learning(
+    reader: &Reader,
+    option: &'static str,
+    emf: Option<EmfSource>,
+    why: &str,
+    errors: &mut Collector,
+) -> bool {
+    let is_on = reader.switch(errors, option) == Some(true);
     // A law that does not use the EMF refuses the option itself.
     let Some(emf) = emf else {
         return false;
     };
     if is_on && emf != EmfSource::Observer {
-        let why = "only `emf: observer` tells how all sensors stand against the EMF";
-        refuse(reader, HALL_LEARNING, ["emf", emf.word()], why, errors);
+        refuse(reader, option, ["emf", emf.word()], why, errors);
     }
     is_on && emf == EmfSource::Observer
 }

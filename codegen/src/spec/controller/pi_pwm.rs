@@ -124,7 +124,13 @@ impl Options for PiPwmSpec {
             check_six_step(reader, errors);
         }
         if !feed_forward {
-            for name in ["emf", "emf_filter", "residual_timeout", "hall_learning"] {
+            for name in [
+                "emf",
+                "emf_filter",
+                "residual_timeout",
+                "hall_learning",
+                "torque_learning",
+            ] {
                 let Some(field) = reader.field(name) else {
                     continue;
                 };

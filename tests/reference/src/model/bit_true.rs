@@ -24,6 +24,7 @@ mod slew;
 mod speed;
 mod state;
 mod tables;
+mod torque_learning;
 mod weakening;
 
 use super::angle::AngleSensor;
@@ -48,6 +49,7 @@ use residual::ResidualWatch;
 use slew::Slew;
 use speed::Regulator;
 use state::State;
+use torque_learning::TorqueLearning;
 use weakening::FieldWeakening;
 
 /// Fraction bits of the ratio of two sensors' gains.
@@ -71,6 +73,7 @@ pub struct BitTrue<W: Word = f64> {
     fade: Option<Fade<W>>,
     bus_current: Option<BusCurrent<W>>,
     residual: Option<ResidualWatch<W>>,
+    torque: Option<TorqueLearning<W>>,
     /// Volt per ampere of the set-point.
     gain: f64,
     // Set-point words.
@@ -156,6 +159,7 @@ impl<W: Word> BitTrue<W> {
             fade: Fade::new(spec, &scale)?,
             bus_current: BusCurrent::new(spec, &scale, &k)?,
             residual: ResidualWatch::new(spec, &scale)?,
+            torque: TorqueLearning::new(spec, &scale)?,
             v_bus: word(k.v_bus_nominal),
             gain: reference_gain(spec),
             ratio: word(pow2(k.ratio_bits as i32)),
@@ -184,10 +188,14 @@ impl<W: Word> BitTrue<W> {
 
     /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
     pub fn set_torque(&mut self, bits: i32) {
+        let mut bits = input(bits);
+        if self.torque.is_some() {
+            bits = self.state.torque.scaled(bits);
+        }
         self.j = self
             .k
             .k_torque
-            .mul(within(input(bits), -self.k.t_max_bits, self.k.t_max_bits));
+            .mul(within(bits, -self.k.t_max_bits, self.k.t_max_bits));
     }
 
     /// Sets the speed from the bits of an `I16F16` in rpm. No effect without a speed loop.
@@ -409,6 +417,9 @@ impl<W: Word> BitTrue<W> {
             self.state.learnt = angle.learnt;
         }
         let sector_eff = angle.sector_eff;
+        if let Some(learning) = &self.torque {
+            self.state.torque.ratio = learning.learn(&self.state, angle.speed.step);
+        }
 
         // Slew rate, speed loop
         let (mut j, mut j_in_force) = (self.j, self.state.j_in_force);
@@ -464,6 +475,7 @@ impl<W: Word> BitTrue<W> {
         // 8 EMF
         let mut emf_error = self.state.emf_error;
         let mut residual_count = self.state.residual_count;
+        let mut light = self.state.torque.light;
         let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => ([word(0.0); 2], [word(0.0); 2]),
             Some(EmfSource::Estimated) => {
@@ -500,6 +512,9 @@ impl<W: Word> BitTrue<W> {
                     if let Some(watch) = &self.residual {
                         let demand = (j, angle.speed.step);
                         residual_count = watch.count(&self.state, residual, emf_error, demand);
+                    }
+                    if let Some(learning) = &self.torque {
+                        light = learning.count(light, j, angle.speed.step);
                     }
                     let e = emf::corrected(k, mean(start, end), emf_error, shape);
                     (e, if delayed { self.state.e_next } else { e })
@@ -591,6 +606,7 @@ impl<W: Word> BitTrue<W> {
             self.state.emf_error = emf_error;
             self.state.weakening = weakening;
             self.state.residual_count = residual_count;
+            self.state.torque.light = light;
             self.state.speed_integral = speed_integral;
             self.state.speed_in_force = speed_in_force;
             self.state.ramp_begun = greater(self.state.ramp_begun, self.state.timing.ramp_known());

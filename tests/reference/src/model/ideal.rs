@@ -8,6 +8,7 @@ pub(super) mod hall_learning;
 mod law;
 mod limit;
 mod speed;
+pub(super) mod torque_learning;
 mod vector;
 
 use super::angle::AngleSensor;
@@ -26,6 +27,7 @@ use law::{Command, Inputs, Law};
 use nalgebra::{Vector2, Vector3};
 use speed::SpeedLoop;
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
+use torque_learning::TorqueLearning;
 use vector::{clarke, from_ab, phases, to_ab};
 
 /// Radians of an angle word.
@@ -109,6 +111,8 @@ pub struct Ideal {
     weakening_share: Option<[f64; 2]>,
     /// Whether the places of the Hall sensors are learnt.
     learns_halls: bool,
+    /// Learning of the torque constant.
+    torque: Option<TorqueLearning>,
     /// Error of the EMF across the shape where the angle is off, volt per electrical rad/s.
     across_at_small_angle: f64,
     /// Bus voltages of the whole set-point and of none, volt: of braking, and of motoring torque.
@@ -182,6 +186,7 @@ impl Ideal {
             slew_step: spec.loop_options().slew_rate * inverter.t_s,
             weakening_share: spec.weakening_share(),
             across_at_small_angle: across_at_small_angle(motor),
+            torque: TorqueLearning::new(spec)?,
             learns_halls: spec.loop_options().hall_learning == Switch::On,
             fades: [inverter.braking_fade, inverter.motoring_fade],
             bus_currents: [inverter.bus_current_limit, inverter.return_current_limit],
@@ -238,7 +243,8 @@ impl Ideal {
 
     /// Sets the torque set-point from the bits of an `I16F16` in newton metres.
     pub fn set_torque(&mut self, bits: i32) {
-        self.set_current_amps(f64::from(bits) / 65_536.0 / self.k_t);
+        let torque = f64::from(bits) / 65_536.0 * self.state.torque.ratio;
+        self.set_current_amps(torque / self.k_t);
     }
 
     /// Sets the speed from the bits of an `I16F16` in rpm. No effect without a speed loop.
@@ -397,6 +403,12 @@ impl Ideal {
             };
 
         self.state.step_angle = step_angle;
+        if let Some(learning) = &self.torque
+            && self.state.timing.edges >= 2
+        {
+            let error = self.state.emf_error[0];
+            self.state.torque.ratio = learning.learn(self.state.torque, error, step_angle);
+        }
 
         // Slew rate, speed loop
         let (mut current, mut speed_integral) = (self.current, self.state.speed_integral);
@@ -450,6 +462,7 @@ impl Ideal {
         let delayed = self.variant.delayed();
         let mut emf_error = self.state.emf_error;
         let mut residual_count = self.state.residual_count;
+        let mut light = self.state.torque.light;
         let (e, e_now) = match self.variant.emf {
             None | Some(EmfSource::Held) => (Vector2::zeros(), Vector2::zeros()),
             Some(EmfSource::Estimated) => {
@@ -484,6 +497,9 @@ impl Ideal {
                     emf_error = self.corrected_error(residual, &shape);
                     residual_count =
                         self.counted_residual(residual, emf_error, [current, step_angle]);
+                    if let Some(learning) = &self.torque {
+                        light = learning.count(light, current, step_angle);
+                    }
                     let e = self.corrected_emf(&e, emf_error, &shape);
                     let [next_a, next_b] = self.state.e_next;
                     (e, if delayed { from_ab(next_a, next_b) } else { e })
@@ -579,6 +595,7 @@ impl Ideal {
             self.state.emf_error = emf_error;
             self.state.weakening = weakening;
             self.state.residual_count = residual_count;
+            self.state.torque.light = light;
             self.state.speed_integral = speed_integral;
             self.state.speed_in_force = speed_in_force;
             let known = self.state.timing.ramp_known();
@@ -601,6 +618,7 @@ impl Ideal {
             self.state.emf_error = [0.0; 2];
             self.state.weakening = 0.0;
             self.state.residual_count = 0.0;
+            self.state.torque.light = 0.0;
             self.state.integral = [0.0; 2];
             self.state.speed_integral = 0.0;
             self.state.speed_in_force = 0.0;

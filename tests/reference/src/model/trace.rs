@@ -3,6 +3,7 @@
 
 use super::hall::HallTiming;
 use super::ideal::hall_learning::PlacedEdges;
+use super::ideal::torque_learning::LearntTorque;
 use super::supervision::Supervisor;
 
 /// Signals of the last step. Pairs are phases a, b; phase c is minus their sum.
@@ -99,6 +100,8 @@ pub struct PhysicalState {
     pub weakening: f64,
     /// Periods in which the currents did not follow the voltages, less those in which they did.
     pub residual_count: f64,
+    /// The torque constant, as learnt.
+    pub(super) torque: LearntTorque,
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
     /// Whether the components along a and across it are to rise (PHCC); `None` before the first

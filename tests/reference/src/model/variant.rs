@@ -1,6 +1,7 @@
 //! Steps and state words of a variant, for both models.
 
 use crate::Error;
+use crate::emf_shape::EmfShape;
 use crate::spec::{
     Bus, Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg,
     Reference, Saturation, Spec, Switch,
@@ -215,6 +216,20 @@ pub fn emf_limit(spec: &Spec) -> f64 {
 fn saturated(spec: &Spec, volts: f64) -> f64 {
     let count = spec.inverter.v_bus / f64::from(spec.inverter.timer_period);
     (volts / count).log2().ceil().exp2()
+}
+
+/// Resistance, over the stated one, whose drop the EMF must exceed.
+pub const LITTLE: f64 = 200.0;
+/// Periods behind which the observed error has settled.
+pub const SETTLED: f64 = 64.0;
+
+/// Component along the shape that the observer makes of the EMF, V s per electrical radian.
+pub fn flux_along(spec: &Spec, shape: &EmfShape) -> f64 {
+    let motor = &spec.motor;
+    let inverses = (0..600).map(|k| shape.alpha_beta(f64::from(k).to_radians() / 10.0));
+    let inverses = inverses.map(|emf| emf.norm_squared().recip());
+    let mean = inverses.sum::<f64>() / 600.0;
+    1.5 * motor.emf_constant.powi(2) / (motor.torque_constant * mean) / f64::from(motor.pole_pairs)
 }
 
 /// Residual allowed by the residual watch: volt always, volt per ampere of the set-point, volt per

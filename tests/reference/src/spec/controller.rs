@@ -49,6 +49,8 @@ pub struct LoopOptions {
     pub field_weakening: Switch,
     /// Whether the places of the Hall sensors are learnt.
     pub hall_learning: Switch,
+    /// Whether the torque constant is learnt.
+    pub torque_learning: Switch,
 }
 
 impl LoopOptions {
@@ -109,6 +111,9 @@ macro_rules! options {
             /// Whether the places of the Hall sensors are learnt.
             #[serde(default)]
             pub hall_learning: Switch,
+            /// Whether the torque constant is learnt.
+            #[serde(default)]
+            pub torque_learning: Switch,
             $($(#[$doc])* pub $field: $kind,)*
         }
 
@@ -129,6 +134,7 @@ macro_rules! options {
                     residual_periods: self.residual_periods,
                     field_weakening: self.field_weakening,
                     hall_learning: self.hall_learning,
+                    torque_learning: self.torque_learning,
                 }
             }
         }

@@ -259,6 +259,9 @@ fn in_every_variant() {
     let learnt = variants::learnt();
     assert!(learnt.len() > 20, "{}", learnt.len());
     variants.extend(learnt);
+    let of_torque = variants::with_torque_learnt();
+    assert!(of_torque.len() > 20, "{}", of_torque.len());
+    variants.extend(of_torque);
     let mut overall = Worst::default();
     for (seed, variant) in (0..).zip(&variants) {
         let worst = follow(variant, seed);

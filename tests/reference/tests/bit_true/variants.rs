@@ -313,6 +313,21 @@ pub fn learnt() -> Vec<Variant> {
         .collect()
 }
 
+/// One in three of all variants that observe the EMF behind a measured bus, with the torque constant learnt.
+pub fn with_torque_learnt() -> Vec<Variant> {
+    let variants = all().into_iter().chain(others());
+    let told = variants.filter(|variant| {
+        let observes = variant.spec.loop_options().emf == EmfSource::Observer;
+        observes && variant.toml.contains("bus_adc_bits")
+    });
+    told.step_by(3)
+        .map(|variant| {
+            let toml = format!("{}torque_learning = \"on\"\n", variant.toml);
+            variant_of(format!("{} torque learnt", variant.name), toml)
+        })
+        .collect()
+}
+
 fn variant_of(name: String, toml: String) -> Variant {
     let spec = Spec::from_toml(&toml).expect("a valid specification");
     Variant {
@@ -401,6 +416,12 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
             "k_across",
             shift(0.02 * linkage * TAU / 2f64.powi(32) * scale),
         ),
+        (
+            "k_along",
+            shift(3.0 * linkage * TAU / 2f64.powi(32) * scale),
+        ),
+        ("k_learn", shift(2f64.powi(22) * w / scale / inverter.v_bus)),
+        ("k_little", shift(200.0 * motor.resistance / gain)),
         ("ratio", 24),
         ("scale", 30),
         ("shape", shift(peak)),

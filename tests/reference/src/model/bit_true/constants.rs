@@ -334,6 +334,7 @@ impl<W: Word> Constants<W> {
                 (Part::EmfError, variant.observes()),
                 (Part::Weakening, spec.weakening_share().is_some()),
                 (Part::Residual, variant.options.residual_periods > 0),
+                (Part::TorqueLearning, options.torque_learning == Switch::On),
                 (Part::Integral, variant.six_step == Some(Switch::Off)),
                 (Part::PairIntegral, variant.six_step == Some(Switch::On)),
                 (

@@ -29,6 +29,7 @@ pub enum Part {
     EmfError,
     Weakening,
     Residual,
+    TorqueLearning,
     Integral,
     PairIntegral,
     Hysteresis,
@@ -39,7 +40,7 @@ pub enum Part {
 
 /// The groups of a variant.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Parts(u32);
+pub struct Parts(u64);
 
 impl Parts {
     /// The groups whose condition is true.

@@ -8,6 +8,7 @@ use super::state::State;
 use super::{BitTrue, Signals};
 use crate::exact::{both, pow2};
 use crate::model::ideal::hall_learning::PlacedEdges;
+use crate::model::ideal::torque_learning::LearntTorque;
 use crate::model::trace::{Past, PhysicalState, Trace};
 use std::f64::consts::TAU;
 
@@ -111,6 +112,10 @@ impl State<f64> {
             },
             weakening: self.weakening * pow2(-32),
             residual_count: self.residual_count,
+            torque: LearntTorque {
+                ratio: self.torque.ratio * pow2(-28),
+                light: self.torque.light,
+            },
             integral: volts(self.integral),
             rises: self
                 .hysteresis

@@ -4,6 +4,7 @@ use super::constants::Constants;
 use super::hall_learning::Learnt;
 use super::parts::{Part, Parts};
 use super::rotor::Speed;
+use super::torque_learning::Torque;
 use crate::exact::{Word, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
@@ -49,6 +50,7 @@ pub struct State<W: Word> {
     pub emf_error: [W; 2],
     pub weakening: W,
     pub residual_count: W,
+    pub torque: Torque<W>,
     pub integral: [W; 2],
     /// `h_a`, `h_b`; unless stored in the contributions of past periods.
     pub hysteresis: [W; 2],
@@ -304,6 +306,10 @@ macro_rules! for_each_word {
         if $parts.has(Part::Residual) {
             $show!("residual_count", $state.residual_count);
         }
+        if $parts.has(Part::TorqueLearning) {
+            $show!("torque_ratio", $state.torque.ratio);
+            $show!("light_periods", $state.torque.light);
+        }
         if $parts.has(Part::Integral) {
             $show!("integral_a", $state.integral[0]);
             $show!("integral_b", $state.integral[1]);
@@ -381,6 +387,7 @@ impl<W: Word> State<W> {
         self.emf_error = [word(0.0); 2];
         self.weakening = word(0.0);
         self.residual_count = word(0.0);
+        self.torque.light = word(0.0);
         self.integral = [word(0.0); 2];
         self.hysteresis = [word(0.0); 2];
         self.vector_prev = Vector(0);

@@ -1,0 +1,145 @@
+//! Torque constant, learnt while the set-point asks for little torque (semantics page of predictive deadbeat,
+//! "Learning of the torque constant").
+//!
+//! Under load the error of the modelled EMF along the shape mixes the EMF constant with resistance and dead
+//! time. With no current, and the bus measured, it is the constant's alone.
+
+use super::set_point::SetPointWords;
+use super::{Lowering, Rotor};
+use crate::diagnostics::{engineering, significant};
+use crate::ir::{Coefficient, Expr, Interval, Memory, named};
+
+/// The state word: stated over learnt torque constant.
+pub const TORQUE_RATIO: &str = "torque_ratio";
+
+/// Fraction bits of the ratio.
+pub const RATIO_BITS: u32 = 28;
+
+/// A ratio of 1.
+pub const ONE: i32 = 1 << RATIO_BITS;
+
+/// Least and greatest ratio: a torque constant of 1.5 times and of two thirds of the stated one.
+const LIMITS: [f64; 2] = [2.0 / 3.0, 1.5];
+
+/// EMF over the drop across the resistance above which the current is little: a resistance of twice the stated one reads
+/// as half a percent of the constant.
+const LITTLE: f64 = 200.0;
+
+/// Least EMF that tells the constant, over the nominal bus.
+const LEAST_EMF: f64 = 1.0 / 16.0;
+
+/// Periods of little current behind which the observed error has settled: nine tenths of it fall in 24.
+const SETTLED: i32 = 64;
+
+/// Share of the difference by which the ratio moves in a period, for an EMF of the nominal bus.
+const GAIN: f64 = 1.0 / 64.0;
+
+/// The words.
+#[derive(Clone, Copy, Debug)]
+pub struct TorqueLearning<'b> {
+    ratio: Memory<'b>,
+    /// Periods of little current in a row.
+    light: Memory<'b>,
+    /// The set-point's gain, V/A.
+    gain: f64,
+    /// Voltage along the shape per angle of a period.
+    k_along: Coefficient,
+}
+
+impl<'b> TorqueLearning<'b> {
+    /// Declares the words.
+    pub fn new(l: &Lowering<'b>, set_point: &SetPointWords<'b>) -> Self {
+        let [least, most] = limits();
+        let doc = "Stated over learnt torque constant, 28 fraction bits.";
+        let ratio =
+            l.b.memory(TORQUE_RATIO, ONE, Interval::new(least, most), doc);
+        let doc = "Control periods in a row whose current is little beside the EMF, at most 64.";
+        let light =
+            l.b.memory("light_periods", 0, Interval::new(0, SETTLED.into()), doc);
+        // What the observer makes of an EMF k_phase omega f: its projection on the shape, 2/3 k_t/k_phase f/|f|^2.
+        let motor = &l.spec.motor;
+        let flux = motor.emf_constant / f64::from(motor.pole_pairs);
+        let along = 1.5 * motor.emf_constant
+            / (l.spec.torque_constant() * motor.emf_shape.mean_inverse_square());
+        let doc = "Modelled EMF along the shape per angle of a period.";
+        Self {
+            ratio,
+            light,
+            gain: set_point.gain.value,
+            k_along: l.voltage_by_turn("k_along", along * flux, doc),
+        }
+    }
+
+    /// Moves the ratio, from the EMF's error along the shape in the last step. Added to the tracking.
+    pub fn learn(self, l: &Lowering<'b>, rotor: &Rotor<'b>, error: Expr<'b>) {
+        let old = self.ratio.read();
+        named! {
+            let is_told = rotor.tracking & self.light.read().is_at_least(SETTLED);
+        }
+        l.b.guarded_stage(
+            "learn_torque",
+            is_told,
+            true,
+            &[
+                "Torque constant: without current the error of the modelled EMF along the shape is that of its constant. The ratio",
+                "moves until it takes the EMF that is seen to the modelled one.",
+            ],
+        );
+        let bus = l.spec.inverter.v_bus * l.scale.voltage();
+        let gain = GAIN * f64::from(ONE) / bus;
+        let doc = "Rise of the ratio per voltage.";
+        let k_learn = l.coefficient("k_learn", gain, 32, doc, &significant(gain));
+        let [least, most] = limits();
+        let doc = "Least ratio: a torque constant of 1.5 times the stated one.";
+        let least = l.number("torque_ratio_min", least, doc);
+        let doc = "Greatest ratio: a torque constant of two thirds of the stated one.";
+        let most = l.number("torque_ratio_max", most, doc);
+        named! {
+            let emf_along = self.k_along * rotor.step_angle;
+            let emf_seen = emf_along + error;
+            let emf_beyond = emf_along - emf_seen.mul_floor(old, RATIO_BITS);
+            let ratio_rise = k_learn * rotor.step_angle.is_at_least(0).sign(emf_beyond);
+            let ratio_told = (old + ratio_rise).clamp(least, most);
+        }
+        let [ratio] = l.b.join([("torque_ratio_new", ratio_told, old)]);
+        self.ratio.set(ratio);
+    }
+
+    /// Counts the periods of little current; `j`: the set-point in force.
+    pub fn follow(
+        self,
+        l: &Lowering<'b>,
+        rotor: &Rotor<'b>,
+        j: Expr<'b>,
+    ) -> (Memory<'b>, Expr<'b>) {
+        l.b.stage(
+            "watch_torque",
+            &["Counts the periods in a row in which the EMF is large beside the drop across the resistance."],
+        );
+        let drop = LITTLE * l.spec.motor.resistance;
+        let k_drop = l.coefficient(
+            "k_little",
+            drop / self.gain,
+            32,
+            "200 times the drop across the resistance per set-point.",
+            &format!("200 R/K = {}", significant(drop / self.gain)),
+        );
+        let least = LEAST_EMF * l.spec.inverter.v_bus;
+        let doc = format!(
+            "Least EMF that tells the torque constant, {}.",
+            engineering(least, "V")
+        );
+        let least = l.number("light_least", l.volts_word(least), &doc);
+        named! {
+            let emf_light = self.k_along * rotor.step_angle.abs();
+            let is_light = emf_light.is_above(k_drop * j.abs() + least);
+            let light_new = is_light.choose((self.light.read() + 1).min(SETTLED), 0);
+        }
+        (self.light, light_new)
+    }
+}
+
+/// Limits of the ratio, words.
+fn limits() -> [i64; 2] {
+    LIMITS.map(|ratio| (ratio * f64::from(ONE)).round() as i64)
+}
