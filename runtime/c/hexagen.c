@@ -83,6 +83,11 @@ int32_t hexagen_scaled_torque(int32_t bits, int32_t ratio)
     return hexagen_mul_round(ratio, hexagen_clamp(bits, -most, most), 28);
 }
 
+int32_t hexagen_torque_constant_ratio(int32_t ratio)
+{
+    return INT32_C(2) * ((INT32_C(1) << 30) / (ratio >> 13));
+}
+
 int32_t hexagen_whole(int32_t number)
 {
     if (number > INT32_C(32767)) {

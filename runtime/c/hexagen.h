@@ -437,6 +437,9 @@ static inline int32_t hexagen_angle_fraction(int32_t angle, uint32_t segments)
  */
 int32_t hexagen_scaled_torque(int32_t bits, int32_t ratio);
 
+/** Learnt over stated torque constant, with 16 fraction bits, of the inverse ratio with 28. */
+int32_t hexagen_torque_constant_ratio(int32_t ratio);
+
 /** Thousandths as a number with 16 fraction bits, rounded to the nearest; saturates. */
 int32_t hexagen_thousandths(int32_t number);
 

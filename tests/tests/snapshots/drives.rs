@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 29] = [
+const VARIANTS: [(&str, &str, Fields); 30] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     (
         "pdcc.model-advance",

@@ -135,6 +135,11 @@ impl Drive<'_> {
         let mut methods = vec![self.init(), self.period()];
         for (set, function) in &self.program.setters {
             methods.push(self.setter(*set, function));
+            methods.extend(
+                (self.interface.torque_ratio)
+                    .filter(|_| *set == Setter::Torque)
+                    .map(|word| self.torque_constant_ratio(word)),
+            );
             methods.extend(self.other_unit(*set));
         }
         methods.extend(self.commands());
@@ -487,6 +492,23 @@ impl Drive<'_> {
                 parameters.join(", ")
             ),
             body,
+        }
+    }
+
+    /// The function that returns the learnt torque constant.
+    fn torque_constant_ratio(&self, word: &str) -> Method {
+        Method {
+            doc: doc(&[
+                "The learnt torque constant over the stated one, with 16 fraction bits: 65536 is one.",
+            ]),
+            head: format!(
+                "int32_t {}(const {} *drive)",
+                self.names.public("torque_constant_ratio"),
+                self.names.prefix
+            ),
+            body: lines(&[&format!(
+                "return hexagen_torque_constant_ratio(drive->state.{word});"
+            )]),
         }
     }
 

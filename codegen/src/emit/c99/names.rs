@@ -109,7 +109,7 @@ const RESERVED: [&str; 25] = [
 ];
 
 /// Functions that every header declares with the drive's prefix, besides the setters.
-const FUNCTIONS: [&str; 11] = [
+const FUNCTIONS: [&str; 12] = [
     "brake",
     "calibrate",
     "coast",
@@ -120,6 +120,7 @@ const FUNCTIONS: [&str; 11] = [
     "signals",
     "status",
     "step",
+    "torque_constant_ratio",
     "trip",
 ];
 

@@ -122,7 +122,7 @@ pub struct LoopOptions {
 /// Every group of options that several controllers take, and what it is for.
 pub(crate) const SHARED: [(&str, &[Row<LoopOptions>]); 3] = [
     ("Options", LOOP),
-    ("Options where a voltage is limited", LIMITED),
+    ("Options of voltage limits", LIMITED),
     ("Options of commutations", COMMUTATION),
 ];
 
