@@ -259,3 +259,13 @@ fn dependencies_are_where_they_are_said_to_be() {
         }
     }
 }
+
+hexagen::controller! {
+    /// Whose file states everything.
+    pub Hub { motor: "tests/motors/hub.toml" }
+}
+
+#[test]
+fn a_motor_file_may_state_everything() {
+    assert_eq!(<Hub as hexagen::Control>::NAME, "Hub");
+}
