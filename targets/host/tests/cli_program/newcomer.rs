@@ -191,7 +191,7 @@ fn check_tells_the_limits_of_the_bus_current() {
     let said = run(["check", file.to_str().expect("a path")]);
     assert_short(&said);
     for text in [
-        "the bus and its current limit leave 65.",
+        "the bus and its current limit leave 75.",
         "limits      at most 5 A drawn from the bus, 1 A returned to it",
     ] {
         assert!(said.stdout.contains(text), "{text}: {}", said.stdout);
