@@ -1,8 +1,8 @@
 //! Guide: from a data sheet to a motor that turns.
 //!
 //! Read the first three chapters before the first drive, the next three with the board on the
-//! bench, and the rest when a question brings you there. Every example is compiled and run as a
-//! documentation test; every figure names the command that prints it.
+//! bench, and the rest when a question brings you there. Every example of Rust and C is compiled and
+//! run in a test; every figure names the command that prints it.
 //!
 //! 1. [`first_drive`]: dependencies, macro, interrupt, start and stop, faults, a test.
 //! 2. [`controllers`]: which controller to take.
@@ -14,10 +14,11 @@
 //! 8. [`troubleshooting`]: from the symptom to the cause.
 //! 9. [`snapshots`]: a test that shows when generated code changes.
 //! 10. [`two_motors`]: two drives in one firmware.
-//! 11. [`fixed_and_float`]: what fixed point costs in accuracy.
-//! 12. [`proofs`]: what is proven, what is tested, and what is neither.
-//! 13. [`theory`]: the model of the motor and the four laws.
-//! 14. [`glossary`]: terms and symbols.
+//! 11. [`in_c`]: the same drives as C99.
+//! 12. [`fixed_and_float`]: what fixed point costs in accuracy.
+//! 13. [`proofs`]: what is proven, what is tested, and what is neither.
+//! 14. [`theory`]: the model of the motor and the four laws.
+//! 15. [`glossary`]: terms and symbols.
 
 /// Chapter 1: dependencies, macro, interrupt, start and stop, faults, a test.
 ///
@@ -63,19 +64,23 @@ pub mod snapshots {}
 ///
 #[cfg_attr(doc, doc = include_str!("guide/two_motors.md"))]
 pub mod two_motors {}
-/// Chapter 11: what fixed point costs in accuracy.
+/// Chapter 11: the same drives as C99.
+///
+#[cfg_attr(doc, doc = include_str!("guide/in_c.md"))]
+pub mod in_c {}
+/// Chapter 12: what fixed point costs in accuracy.
 ///
 #[cfg_attr(doc, doc = include_str!("guide/fixed_and_float.md"))]
 pub mod fixed_and_float {}
-/// Chapter 12: what is proven, what is tested, and what is neither.
+/// Chapter 13: what is proven, what is tested, and what is neither.
 ///
 #[cfg_attr(doc, doc = include_str!("guide/proofs.md"))]
 pub mod proofs {}
-/// Chapter 13: the model of the motor and the four laws.
+/// Chapter 14: the model of the motor and the four laws.
 ///
 #[cfg_attr(doc, doc = include_str!("guide/theory.md"))]
 pub mod theory {}
-/// Chapter 14: terms and symbols.
+/// Chapter 15: terms and symbols.
 ///
 #[cfg_attr(doc, doc = include_str!("guide/glossary.md"))]
 pub mod glossary {}

@@ -32,7 +32,8 @@ impl Sample {
     /// ADC counts of the currents of phases a and b, which rise with the current into the motor
     /// (`adc_inverted: on`: fall), and the Hall code `Ha Hb Hc` with Ha in bit 2. Where one of the
     /// two phases has no sensor, any number may stand for its count, and
-    /// [`third_current`](Self::third_current) adds the count of phase c.
+    /// [`third_current`](Self::third_current) adds the count of phase c. A drive with `hall_timer_clock`
+    /// also needs [`hall_ticks`](Self::hall_ticks). Without them those counts are 0.
     ///
     /// Any code is accepted: one that Hall sensors cannot give (0, 7 and above) trips the drive.
     #[inline]

@@ -39,15 +39,28 @@ pub fn pack(verify: bool) -> Result<Step, String> {
     of_published(pack)
 }
 
-/// The documentation of all published crates, without warnings.
+/// The documentation of all published crates, without warnings and with the guide.
 ///
 /// # Errors
 /// Errors of reading the workspace.
 pub fn documentation() -> Result<Step, String> {
     of_published(Step {
         environment: vec![("RUSTDOCFLAGS", "-D warnings")],
+        check: Some(check_front_page),
         ..step("documentation", &["doc", "--workspace", "--no-deps"])
     })
+}
+
+/// Checks that the page of `hexagen` is the library's, which leads to the guide: the program of that
+/// name would write its own page over it.
+fn check_front_page() -> Result<(), String> {
+    let builds = env::var_os("CARGO_TARGET_DIR");
+    let builds = root().join(builds.unwrap_or_else(|| "target".into()));
+    let page = builds.join("doc/hexagen/index.html");
+    if read(&page)?.contains("guide/index.html") {
+        return Ok(());
+    }
+    Err(format!("{} does not lead to the guide", page.display()))
 }
 
 /// A step of the whole workspace, without the crates that are not published.

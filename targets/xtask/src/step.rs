@@ -9,6 +9,8 @@ pub struct Step {
     pub environment: Vec<(&'static str, &'static str)>,
     /// A cargo subcommand that must be installed, and how to get it.
     pub needs: Option<(&'static str, &'static str)>,
+    /// What must hold behind it.
+    pub check: Option<fn() -> Result<(), String>>,
 }
 
 /// A cargo command without prerequisites.
@@ -22,6 +24,7 @@ pub fn step(name: &'static str, arguments: &[&str]) -> Step {
         arguments,
         environment: vec![],
         needs: None,
+        check: None,
     }
 }
 

@@ -329,15 +329,18 @@ pub fn run(steps: &[Step]) -> Result<(), String> {
         let status = command
             .status()
             .map_err(|error| format!("cannot run cargo: {error}"))?;
+        let outcome = match step.check {
+            _ if !status.success() => Err(format!("step `{}` failed", step.name)),
+            Some(check) => check(),
+            None => Ok(()),
+        };
         println!(
             "== {}: {} after {} s",
             step.name,
-            if status.success() { "passed" } else { "FAILED" },
+            if outcome.is_ok() { "passed" } else { "FAILED" },
             begin.elapsed().as_secs()
         );
-        if !status.success() {
-            return Err(format!("step `{}` failed", step.name));
-        }
+        outcome?;
     }
     Ok(())
 }

@@ -244,7 +244,7 @@ fn read_back_emf<'a>(
         _ if phase => winding.map(|winding| winding == Winding::Delta),
         _ => line.then_some(true),
     };
-    if dimension == Dimension::SpeedConstant && stated.is_empty() && is_open(reader, shape) {
+    if dimension == Dimension::SpeedConstant && stated.is_empty() && is_open(reader) {
         push_forms(&given, [false, true], None, shape, errors);
         return None;
     }
@@ -358,16 +358,12 @@ fn with_words(given: &Given, words: &str) -> String {
     format!("{} {unit} {words}", given.number.digits)
 }
 
-/// Whether nothing says of a speed constant if its voltage is the peak between two terminals or the mean over
-/// block commutation. With a flat top both are one number. With a sine they differ by 4.7 %: makers of outrunners
-/// print the mean, an oscilloscope shows the peak. A second constant tells which it is.
-fn is_open(reader: &Reader, shape: Option<EmfShape>) -> bool {
-    let differ = |shape| {
-        let [peak, mean] = [Reading::LinePeak, Reading::BlockMean].map(|of| of.factor(shape));
-        (peak / mean - 1.0).abs() > 0.005
-    };
+/// Whether nothing says to which voltage a speed constant refers: an oscilloscope shows the peak between two
+/// terminals, a meter its root mean square, and makers of outrunners print the mean over block commutation. A
+/// second constant tells which it is.
+fn is_open(reader: &Reader) -> bool {
     let stated = FIELDS.iter().filter(|name| reader.field(name).is_some());
-    stated.count() == 1 && shape.is_some_and(differ)
+    stated.count() == 1
 }
 
 /// A speed constant refers to the peak between two terminals, unless its basis says otherwise.
@@ -384,7 +380,7 @@ fn read_speed_constant<'a>(
         .filter(|basis| *basis != Basis::LineToLine)
         .collect();
     let reading = match others[..] {
-        [] if is_open(reader, shape) => {
+        [] if is_open(reader) => {
             push_forms(&given, [false, true], None, shape, errors);
             return None;
         }

@@ -152,10 +152,10 @@ fn every_unit_of_an_emf_is_read_by_both_front_ends() {
         ),
         (phase / 4.0 * 1000.0, "mWb"),
         (phase / 4.0 * 2.0 * PI, "V/Hz"),
-        (30.0 / PI / (2.0 * phase), "rpm/V"),
-        (30.0 / PI / (2.0 * phase), "min-1/V"),
-        (30.0 / PI / (2.0 * phase), "min^-1/V"),
-        (1.0 / (2.0 * phase), "(rad/s)/V"),
+        (30.0 / PI / (2.0 * phase), "rpm/V peak"),
+        (30.0 / PI / (2.0 * phase), "min-1/V peak"),
+        (30.0 / PI / (2.0 * phase), "min^-1/V peak"),
+        (1.0 / (2.0 * phase), "(rad/s)/V peak"),
     ] {
         let spec = both("motor", "back_emf", &format!("{value:.9} {unit}"));
         near(spec.motor.emf_constant, phase);
@@ -446,9 +446,17 @@ fn a_kv_rating_is_enough() {
     assert_eq!(motor.pole_pairs, 7);
     near(motor.emf_constant, 30.0 / PI / 150.0 / 3_f64.sqrt());
     let text = "poles = 30\nresistance = \"0.4 ohm phase-to-phase\"\ninductance = \"0.6 mH phase-to-phase\"\n\
-                speed_constant = \"16 rpm/V\"\nemf_shape = \"trapezoid\"\nrated_current = \"10 A\"\nrated_speed = \"400 rpm\"";
+                speed_constant = \"16 rpm/V peak\"\nemf_shape = \"trapezoid\"\nrated_current = \"10 A\"\nrated_speed = \"400 rpm\"";
     let motor = of_file(&newcomer(text, 36, 30)).motor;
     near(motor.emf_constant, 30.0 / PI / 16.0 / 2.0);
+    // What a meter shows is no peak.
+    for shape in ["sine", "trapezoid"] {
+        let text = text.replace(" peak", "").replace("trapezoid", shape);
+        let parsed = parse_toml(&newcomer(&text, 36, 30), "hub.toml");
+        let errors = parsed.and_then(|ast| check(&ast)).expect_err(shape);
+        let codes: Vec<Code> = errors.as_slice().iter().map(|error| error.code).collect();
+        assert_eq!(codes, [Code::MissingBasis], "{errors}");
+    }
 }
 
 /// A dozen slips of newcomers: where each is marked, and what it is told.

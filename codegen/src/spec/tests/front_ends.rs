@@ -235,7 +235,7 @@ fn bases_and_windings_lead_to_the_same_star() {
             ("x", "x"),
         ],
         [
-            ("0.1648 V/(rad/s) line_to_line peak", "57.944763 rpm/V"),
+            ("0.1648 V/(rad/s) line_to_line peak", "57.944763 rpm/V peak"),
             ("x", "x"),
             ("x", "x"),
         ],

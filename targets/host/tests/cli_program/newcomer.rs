@@ -46,8 +46,8 @@ const HUB: [&str; 11] = [
     "poles=30",
     "resistance=0.4 ohm terminal",
     "inductance=0.6 mH terminal",
-    "speed_constant=16 rpm/V",
-    "emf_shape=trapezoidal",
+    "speed_constant=16 rpm/V peak",
+    "emf_shape=sinusoidal",
     "rated_current=10 A",
     "rated_speed=400 rpm",
     "bus_voltage=36 V",
@@ -191,7 +191,7 @@ fn check_tells_the_limits_of_the_bus_current() {
     let said = run(["check", file.to_str().expect("a path")]);
     assert_short(&said);
     for text in [
-        "the bus and its current limit leave 65.",
+        "the bus and its current limit leave 75.",
         "limits      at most 5 A drawn from the bus, 1 A returned to it",
     ] {
         assert!(said.stdout.contains(text), "{text}: {}", said.stdout);

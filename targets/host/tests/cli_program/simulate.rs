@@ -611,7 +611,7 @@ fn a_demand_beyond_the_envelope_is_a_warning() {
     let short = warned("560");
     assert!(
         short.contains(
-            "5.968 Nm at 560 rpm: the bus of 36 V drives the whole current only up to 0 Nm there"
+            "5.169 Nm at 560 rpm: the bus of 36 V drives the whole current only up to 0 Nm there"
         ),
         "{short}"
     );

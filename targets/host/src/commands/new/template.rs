@@ -76,7 +76,7 @@ const MOTOR: &[Line] = &[
     needed(
         &["back_emf", "speed_constant", "torque_constant"],
         "The EMF: back_emf with line_to_line or phase, and peak or rms; or speed_constant (rpm/V;\n\
-         # with block_mean for the KV of an outrunner);\n\
+         # with block_mean for the KV of an outrunner, rms for a meter's reading);\n\
          # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
         "17.3 V/krpm line_to_line peak",
     ),
