@@ -68,6 +68,8 @@ pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagno
 pub enum BusRemedy {
     /// Speed reached at rated current, mechanical rad/s.
     Speed(f64),
+    /// The same, of which sensors in the low legs, whose window is not known yet, take a part.
+    BelowSpeed(f64),
     /// Current at standstill, ampere, below the rated current.
     Current(f64),
 }
@@ -78,6 +80,11 @@ impl fmt::Display for BusRemedy {
             Self::Speed(reachable) => {
                 write!(out, "lower `rated_speed` to {}", rpm_at_most(reachable))
             }
+            Self::BelowSpeed(reachable) => write!(
+                out,
+                "lower `rated_speed` below {} (reading the sensors in the low legs takes a part of the bus, too)",
+                rpm_at_most(reachable)
+            ),
             Self::Current(reachable) => {
                 let most = engineering(at_most(reachable), "A");
                 write!(out, "lower `rated_current` below {most}")
@@ -127,7 +134,7 @@ pub fn thousandfold(code: Code, value: &Part, [bus, taken]: [f64; 2]) -> Diagnos
 
 /// EMF and resistive drop of the rating exceed the bus. In volt: the bus; `emf`: line to line at
 /// rated speed; `drop`: of rated current between two terminals; `raised`: the bus that holds the rating, none
-/// where it is above the limit of a measured one.
+/// where it is above the limit of a measured one, or of the board.
 pub fn bus_too_low(
     bus: &Part,
     [speed, current, stated, resistance]: [&Part; 4],
@@ -194,7 +201,7 @@ pub struct Beyond {
     pub speed: Option<f64>,
     /// Nominal bus voltage, volt.
     pub bus: f64,
-    /// The one that the rating takes, volt; none above the limit of a measured bus.
+    /// The one that the rating takes, volt; none above the limit of a measured bus, or of the board.
     pub raised: Option<f64>,
 }
 

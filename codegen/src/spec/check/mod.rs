@@ -58,7 +58,8 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     if !contradicts {
         // Torque and EMF in one wrong basis are one mistake.
         let reference = controller.as_ref().map(|spec| spec.common().reference);
-        relations::check_bus(&motor_reader, &motor, &inverter, reference, &mut errors);
+        let context = (reference, ast.board_bus());
+        relations::check_bus(&motor_reader, &motor, &inverter, context, &mut errors);
     }
     sensing_window::check(
         &inverter_reader,

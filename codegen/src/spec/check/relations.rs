@@ -6,7 +6,7 @@ use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Code, Collector, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
-use crate::spec::{BusSource, Envelope, MotorSpec, Reference, RotorSensing};
+use crate::spec::{BusSource, CurrentSensing, Envelope, MotorSpec, Reference, RotorSensing};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.
@@ -55,13 +55,13 @@ pub(super) fn check_period(
 const MOST_OF_BUS: f64 = 1.25;
 
 /// Accepted: a bus that covers the line-to-line EMF at rated speed, and with what rated current drops
-/// between two terminals misses that by a little. Refused: a rating far beyond, of which a value is wrong. An
+/// between two terminals misses that by a little. `board_bus`: the greatest bus voltage that the board states, volt. Refused: a rating far beyond, of which a value is wrong. An
 /// accepted rating is not promised to be held: the envelope of the whole drive tells.
 pub(super) fn check_bus(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
-    reference: Option<Reference>,
+    (reference, board_bus): (Option<Reference>, Option<f64>),
     errors: &mut Collector,
 ) -> Option<()> {
     let (bus, speed, current) = (
@@ -104,10 +104,16 @@ pub(super) fn check_bus(
             is_peak: stated.basis.contains(&Basis::Peak),
         },
         (
-            Some(raised).filter(|raised| inverter.bus.is_none_or(|bus| bus.takes(*raised))),
+            Some(raised).filter(|raised| {
+                let is_of_board = board_bus.is_none_or(|most| *raised <= most);
+                is_of_board && inverter.bus.is_none_or(|bus| bus.takes(*raised))
+            }),
             envelope.speed(torque).map_or(
                 catalogue::BusRemedy::Current(current.si * bus.si / drop),
-                catalogue::BusRemedy::Speed,
+                |speed| match inverter.sensing.place {
+                    Some(CurrentSensing::LowSide(_)) => catalogue::BusRemedy::BelowSpeed(speed),
+                    _ => catalogue::BusRemedy::Speed(speed),
+                },
             ),
         ),
     ));

@@ -5,7 +5,7 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 8] = [
+const NAMES: [(&str, &[&str]); 12] = [
     (
         "poles",
         &[
@@ -32,7 +32,23 @@ const NAMES: [(&str, &[&str]); 8] = [
             "k_e",
         ],
     ),
-    ("rated_speed", &["nominal_speed"]),
+    ("rated_speed", &["nominal_speed", "rated_rpm", "rpm"]),
+    ("resistance", &["r", "r_s", "phase_resistance"]),
+    ("inductance", &["l", "l_s", "phase_inductance"]),
+    (
+        "bus_voltage",
+        &["supply_voltage", "battery_voltage", "dc_link_voltage"],
+    ),
+    (
+        "f_pwm",
+        &[
+            "pwm_frequency",
+            "pwm_freq",
+            "switching_frequency",
+            "switching_freq",
+            "f_sw",
+        ],
+    ),
     ("rated_torque", &["nominal_torque", "continuous_torque"]),
     (
         "rated_current",

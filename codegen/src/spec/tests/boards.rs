@@ -262,11 +262,11 @@ fn a_board_that_there_is_not_is_told_by_name() {
     assert!(told("\"boards/other.toml\"").contains("cannot be read"));
     assert!(told("\"/boards/mine.toml\"").contains("absolute"));
     assert!(told("vesc").contains("in quotes"));
-    // A file of the library names itself.
+    // A board of the library names itself.
     let text = folder.check(r#"Rear { motor: "motors/hub.toml", board: "st-b-g431b-esc1" }"#);
     let text = text.0.expect_err("25 V are its most");
     assert!(
-        text.contains("hexagen/boards/st-b-g431b-esc1.toml:6:11: note"),
+        text.contains("board st-b-g431b-esc1:6:11: note"),
         "{text}"
     );
 }
