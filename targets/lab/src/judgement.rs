@@ -31,6 +31,9 @@ const HELD: f64 = 99.0;
 /// Fewest ADC counts of the rated current for a smooth current.
 const COUNTS: f64 = 200.0;
 
+/// Part of the control period from which on a step leaves too little of it for anything else, percent.
+const FULL: f64 = 90.0;
+
 /// A run at one speed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
@@ -68,7 +71,8 @@ pub struct Judgement {
     pub motor: String,
     /// Controller variant.
     pub controller: String,
-    /// Whether it neither trips on its nominal bus nor loses half its torque up to rated speed.
+    /// Whether it neither trips on its nominal bus nor loses half its torque up to rated speed, and its
+    /// step in control ends within the period on the core that is named.
     pub works: bool,
     /// The verdict in words.
     pub verdict: String,
@@ -168,6 +172,12 @@ impl Judgement {
         let [slow, rated] = nominal else {
             return (false, "does not work: it was not run".to_owned());
         };
+        let times = &drive.generated.interface.times;
+        let named = times.iter().find(|time| time.is_named);
+        let longest = named.map(longest_step);
+        if let Some(in_control) = named.and_then(too_long_in_control) {
+            return (false, format!("does not work: {in_control}"));
+        }
         let slowly = format!("at {:.0} rpm {}", slow.rpm, self.left(slow));
         if slow.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
             return (false, format!("does not work: even {slowly}"));
@@ -196,9 +206,7 @@ impl Judgement {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
         }
-        if self.overruns {
-            buts.push("a step may take longer than the period".to_owned());
-        }
+        buts.extend(longest.flatten());
         if !self.warnings.is_empty() {
             buts.push("see the warnings".to_owned());
         }
@@ -264,6 +272,20 @@ impl Point {
     fn is_held(&self) -> bool {
         self.torque_pct.is_some_and(|torque| torque >= HELD)
     }
+}
+
+/// What is told of a step whose longest path takes most of the control period, or more.
+fn longest_step(time: &StepTime) -> Option<String> {
+    let percent = time.percent_of_period(time.most_cycles() as u32);
+    let chip = time.chip.name;
+    (percent > FULL).then(|| format!("a step may take {percent} % of the period on the {chip}"))
+}
+
+/// What is told of a step that in control, not only in start and trips, takes longer than the control period.
+fn too_long_in_control(time: &StepTime) -> Option<String> {
+    let percent = time.percent_of_period(time.told().control_cycles);
+    let chip = time.chip.name;
+    (percent > 100.0).then(|| format!("a step in control may take {percent} % of the period on the {chip}"))
 }
 
 fn chosen(drive: &Prepared) -> Vec<Chosen> {

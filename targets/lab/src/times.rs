@@ -48,8 +48,8 @@ impl From<&StepTime> for Time {
     }
 }
 
-/// One line on the first chip: the core that is named, else the Cortex-M4. Estimates are told as about, at worst with
-/// their error.
+/// One line on the first chip: the core that is named, else the Cortex-M4. Estimates are told as about, the worst also
+/// with their error.
 pub fn sentence(times: &[StepTime]) -> String {
     let Some(time) = times.first() else {
         return "not known".to_owned();
@@ -61,11 +61,15 @@ pub fn sentence(times: &[StepTime]) -> String {
         format!("assumed {}", time.chip.name)
     };
     let in_control = told.control_cycles;
+    let with_error = time.errors.map_or_else(String::new, |_| {
+        let most = time.percent_of_period(time.most_cycles() as u32);
+        format!(", with the estimate's error {most} %")
+    });
     format!(
-        "{} {in_control} cycles in control, {} % of a period; at worst {} %; Rust, {chip}",
+        "{} {in_control} cycles in control, {} % of a period; at worst {} %{with_error}; in Rust (C takes more), {chip}",
         if time.is_bound() { "at most" } else { "about" },
         time.percent_of_period(in_control),
-        time.percent_of_period(time.most_cycles() as u32),
+        time.percent_of_period(told.any_cycles),
     )
 }
 
@@ -86,15 +90,17 @@ mod tests {
         let (counted, data) = told("pdcc");
         assert!(counted.starts_with("at most "), "{counted}");
         assert!(
-            counted.ends_with(" %; Rust, assumed STM32G431"),
+            counted.ends_with(" %; in Rust (C takes more), assumed STM32G431"),
             "{counted}"
         );
         assert_eq!(data.len(), 3);
         assert_eq!(data[0].error_pct, None);
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
+        assert!(estimated.contains(", with the estimate's error "), "{estimated}");
+        assert!(!counted.contains("error"), "{counted}");
         assert!(
-            estimated.ends_with(" %; Rust, STM32F030, 64 MHz"),
+            estimated.ends_with(" %; in Rust (C takes more), STM32F030, 64 MHz"),
             "{estimated}"
         );
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));

@@ -1,5 +1,6 @@
 //! The program's arguments, as clap reads them.
 
+use super::output::COLUMNS;
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
     advise, boards, check, compare, completions, explain, faults, generate, halls, limit, motors,
@@ -16,13 +17,16 @@ use std::str::FromStr;
 const AFTER_HELP: &str = "Without a command: the report on the 660 W motor.\n\
     A motor is a TOML file or a name of the library (`hexagen motors`).\n\
     A controller is `name:key=value,key=value`, e.g. `pdcc:emf=model,advance=2`; its keys are \
-    those of the motor file's [controller], which `hexagen --help` lists.";
+    those of the motor file's [controller], which `hexagen --help` lists.\n\
+    Exit code 0: success; 1: a check failed, or the drive tripped; 2: bad input. With --json, standard \
+    output holds one JSON object, with code 2 nothing; messages are text on standard error.";
 
 /// From a motor's data sheet to a verified fixed-point current controller
 #[derive(Debug, Parser)]
 #[command(
     name = "hexagen",
     version,
+    max_term_width = COLUMNS,
     after_help = AFTER_HELP,
     args_conflicts_with_subcommands = true,
     after_long_help = format!("{AFTER_HELP}\n\nControllers and their options:\n{}", option_help())

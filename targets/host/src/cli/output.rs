@@ -25,8 +25,8 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Columns of a line that is meant to be read at a glance.
-const COLUMNS: usize = 100;
+/// Most columns of a line.
+pub(super) const COLUMNS: usize = 100;
 
 /// A row in lines of at most 100 columns, the further ones below its text.
 pub fn wrapped_row(row: &str) -> String {

@@ -1,4 +1,4 @@
-//! `hexagen check`: whether and how well a drive will work, in ten lines and within a second.
+//! `hexagen check`: whether and how well a drive will work, in about a dozen lines and within a second.
 //!
 //! The drive is designed and verified as for generation, and judged on the simulated motor
 //! (`hexagen_lab::judgement`); `report` compares, measures and plots.

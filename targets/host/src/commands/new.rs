@@ -231,6 +231,13 @@ impl Draft {
                 Some((name, value)) => (name.trim(), value.trim()),
                 None => (line.fields[0], answer.as_str()),
             };
+            if !line.fields.contains(&name) {
+                note(&format!(
+                    "`{name}` is not asked for here; answer {}, and write that into the file later.",
+                    names(line)
+                ));
+                continue;
+            }
             if value.is_empty() || self.takes(name, value, file) {
                 asked.push(line.fields[0]);
             }
@@ -286,9 +293,7 @@ impl Draft {
         }
         for (section, lines) in SECTIONS {
             let _ = write!(text, "\n[{section}]\n");
-            if section == "inverter" {
-                text.push_str(&self.fields_of_board());
-            }
+            text.push_str(&self.fields_of_board(section));
             for line in self.lines(lines) {
                 let _ = writeln!(text, "# {}", line.about);
                 let given = self.values_of(line).map(|(name, value)| entry(name, value));
@@ -317,16 +322,28 @@ impl Draft {
         text
     }
 
-    /// What the board states, but for what stands in the file itself, as comments.
-    fn fields_of_board(&self) -> String {
+    /// What the board states of a section, but for what stands in the file itself, as comments.
+    fn fields_of_board(&self, section: &str) -> String {
         let Some((board, fields)) = &self.board else {
             return String::new();
         };
-        let is_own = |name: &String| self.values.iter().any(|(own, _)| own == name);
-        let stated = fields.iter().filter(|(name, _)| !is_own(name));
-        let entries = stated.map(|(name, value)| format!("# {}\n", entry(name, value)));
-        let entries: String = entries.collect();
-        format!("# {board} states these; a line of your own overrides it.\n{entries}\n")
+        let is_shown = |(name, _): &&(String, String)| {
+            let is_own = self.values.iter().any(|(own, _)| own == name);
+            !is_own && section_of(name) == Some(section)
+        };
+        let stated = fields.iter().filter(is_shown);
+        let entries: Vec<String> = stated.map(|(name, value)| entry(name, value)).collect();
+        if entries.is_empty() {
+            return String::new();
+        }
+        // A core and its clock are one statement.
+        let overrides = if section == "controller" {
+            "state both, or none, yourself"
+        } else {
+            "a line of your own overrides it"
+        };
+        let entries = entries.join("\n# ");
+        format!("# {board} states these; {overrides}.\n# {entries}\n\n")
     }
 }
 
@@ -415,6 +432,7 @@ mod tests {
             "0.92 mH terminal",
             "torque_constant=3.6 Ncm/A block_mean",
             "square",
+            "speed_constant=285 rpm/V block_mean",
             "trapezoidal",
             "6.9 A",
             "3500 rpm",
@@ -434,6 +452,7 @@ mod tests {
         draft.ask(&mut given, file).expect("answers are read");
         assert_eq!(given.count(), 0, "an answer was not asked for");
         let text = draft.text();
+        assert!(!text.contains("\nspeed_constant"), "{text}");
         for line in [
             "resistance = \"0.56 ohm terminal\"",
             "emf_shape = \"trapezoidal\"",

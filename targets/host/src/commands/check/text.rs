@@ -12,7 +12,7 @@ use std::iter::repeat;
 /// Torque of `max_current` over the demanded one above which it is told.
 const MORE: f64 = 1.01;
 
-/// About ten lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: each
+/// About a dozen lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: each
 /// option chosen by default on a line of its own, with its reason.
 pub(super) fn lines(
     judgement: &Judgement,
@@ -29,7 +29,7 @@ pub(super) fn lines(
     ];
     rows.extend(of_limits(judgement).map(|text| ("limits", text)));
     rows.push(("current", of_current(judgement, motor, inverter)));
-    rows.push(("step", sentence(&drive.generated.interface.times)));
+    rows.push(("step", of_step(drive)));
     rows.push(("torque", of_torque(judgement)));
     let heading = ["by default"].into_iter().chain(repeat(""));
     rows.extend(heading.zip(of_defaults(judgement, with_reasons)));
@@ -63,6 +63,20 @@ fn of_defaults(judgement: &Judgement, with_reasons: bool) -> Vec<String> {
     line.into_iter().collect()
 }
 
+/// The time of a step, and the chip that the board's file names beside the one whose time it is.
+fn of_step(drive: &Prepared) -> String {
+    let times = &drive.generated.interface.times;
+    let told = sentence(times);
+    let of_board = drive.core_of_board.as_deref().and_then(|core| {
+        let (chip, _) = core.split_once(':').unwrap_or((core, ""));
+        let is_timed = times.iter().any(|time| chip.starts_with(time.chip.name));
+        (!is_timed).then_some(chip)
+    });
+    of_board.map_or(told.clone(), |chip| {
+        format!("{told}; the board has another chip: {chip}")
+    })
+}
+
 fn of_motor(motor: &MotorSpec) -> String {
     let inertia = motor
         .inertia
@@ -81,7 +95,7 @@ fn of_motor(motor: &MotorSpec) -> String {
 
 fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     let edges = match drive.spec.inverter.rotor_sensing {
-        RotorSensing::SampledHalls => "Hall edges to a period (a timer is finer)",
+        RotorSensing::SampledHalls => "Hall edges to a period (a timer of the board is finer)",
         RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer",
         RotorSensing::Angle(_) => "an angle sensor",
     };
@@ -91,10 +105,13 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
     let mut rates: Vec<String> = rates.collect();
     rates.dedup();
+    let rates = match rates.as_slice() {
+        [slow, rated] => format!("{slow} kHz slowly, {rated} kHz at rated speed"),
+        rates => format!("{} kHz", rates.join(", ")),
+    };
     format!(
-        "{}, {edges}; switches at {} kHz",
-        drive.spec.controller.kind(),
-        rates.join(", ")
+        "{}, {edges}; switches at {rates}",
+        drive.spec.controller.kind()
     )
 }
 
@@ -108,7 +125,7 @@ fn of_sensing(judgement: &Judgement, inverter: &InverterSpec) -> String {
         time => format!("dead time {}", engineering(time, "s")),
     };
     format!(
-        "{place}, {} bits to {}, {} a count, {} at rating; {dead_time}",
+        "{place}, {} bits to {}, {} a count, {} counts at rating; {dead_time}",
         inverter.adc_bits,
         engineering(inverter.shown_current(), "A"),
         engineering(inverter.adc_gain.abs(), "A"),
@@ -125,7 +142,7 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         String::new()
     };
     format!(
-        "rated speed takes {}, the inverter makes {reach}{}; whole current to {} rpm",
+        "rated speed takes {} (inductance included) of {reach}{}; whole current to {} rpm",
         engineering(judgement.rating_v, "V"),
         engineering(v_bus, "V"),
         judgement.envelope_rpm.floor(),
@@ -164,12 +181,18 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     } else {
         String::new()
     };
+    // A current that is no block gives the torque of the rated one with another peak.
+    let shaped = if judgement.peak_a > MORE * motor.rated_current {
+        " (above it by its shape)"
+    } else {
+        ""
+    };
     let drawn = judgement.rated().and_then(|point| point.bus_current_a);
     let drawn = drawn.map_or(String::new(), |mean| {
         format!("; bus mean {}", engineering(mean, "A"))
     });
     format!(
-        "{} takes a peak of {}, rated {} peak{drawn}{beyond}; trips at {}",
+        "{} takes a peak of {}, rated {} peak{shaped}{drawn}{beyond}; trips at {}",
         engineering(judgement.torque_nm, "Nm"),
         engineering(judgement.peak_a, "A"),
         engineering(motor.rated_current, "A"),
