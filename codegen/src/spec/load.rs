@@ -22,9 +22,8 @@ pub fn load_motor_file(
     if is_absolute(relative) {
         return Err(catalogue::absolute_motor_file(at).into());
     }
-    let bytes = std::fs::read(root.join(relative)).map_err(|error| {
-        catalogue::unreadable_motor_file(at, relative, &reason_of(&error))
-    })?;
+    let bytes = std::fs::read(root.join(relative))
+        .map_err(|error| catalogue::unreadable_motor_file(at, relative, &reason_of(&error)))?;
     files.push(relative.to_owned());
     let mut ast = parse_toml(&motor_text(bytes, relative)?, relative)?;
     ast.read_board(root, relative, files)?;
@@ -54,9 +53,8 @@ impl Board {
             return Err(catalogue::absolute_board_file(at).into());
         }
         let relative = folder.join(given).to_string_lossy().replace('\\', "/");
-        let bytes = std::fs::read(root.join(&relative)).map_err(|error| {
-            catalogue::unreadable_board_file(at, &relative, &reason_of(&error))
-        })?;
+        let bytes = std::fs::read(root.join(&relative))
+            .map_err(|error| catalogue::unreadable_board_file(at, &relative, &reason_of(&error)))?;
         self.file = Some(parse_board(&motor_text(bytes, &relative)?, &relative)?);
         Ok(Some(relative))
     }
@@ -135,7 +133,7 @@ mod tests {
             .to_string();
         assert_eq!(
             error,
-            "macro:1:1: error[HX0108]: `motor`: the file \"hub.toml\" cannot be read (entity not found); give a path relative to the crate's Cargo.toml"
+            "macro:1:1: error[HX0108]: `motor`: the file \"hub.toml\" cannot be read (there is none); give a path relative to the crate's Cargo.toml"
         );
     }
 }

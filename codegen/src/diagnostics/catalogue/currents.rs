@@ -167,13 +167,8 @@ pub fn hysteresis_reaches_trip(
     )
 }
 
-/// A rated current of less than an ADC count, a thousand times which the sensors show; `given`, `count` in ampere.
-pub fn current_below_a_count(
-    current: &Part,
-    range: &Part,
-    given: f64,
-    count: f64,
-) -> Diagnostic {
+/// A rated current of too few ADC counts, a thousand times which the sensors show; `given`, `count` in ampere.
+pub fn thousandth_of_current(current: &Part, range: &Part, given: f64, count: f64) -> Diagnostic {
     let message = format!(
         "`{}`: {} is {} ADC counts of {}, likely a thousandfold off; check the number and the prefix of its unit",
         current.field,

@@ -3,7 +3,7 @@
 use super::internal;
 use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most,
+    Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most, significant,
 };
 use std::fmt;
 
@@ -208,6 +208,13 @@ pub struct Beyond {
 /// A rating at which the bus cuts the current's shape. `speed`: the rated speed and where it was written.
 pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Diagnostic {
     let [rated, held] = beyond.torques.map(|torque| engineering(torque, "Nm"));
+    let drives = if beyond.torques[1] > 0.0 {
+        format!("drives the whole current up to {held} of the rating's {rated}, and beyond that")
+    } else {
+        format!(
+            "does not drive the whole current of any torque, let alone of the rating's {rated}:"
+        )
+    };
     let raise = beyond.raised.map_or_else(String::new, |raised| {
         let raised = engineering(at_least(raised), "V");
         format!("raise `bus_voltage` to {raised}, or ")
@@ -219,7 +226,7 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         Code::RatingBeyondBus,
         at,
         format!(
-            "`rated_speed`: {speed}: there the bus of {} drives the whole current up to {held} of the rating's {rated}, and beyond that the torque ripples and falls{lasts}; {raise}lower `rated_speed`",
+            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`",
             engineering(beyond.bus, "V"),
         ),
     )
@@ -330,8 +337,13 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
     )
 }
 
+/// Beyond it percents are harder to read than a factor.
+const MULTIPLE: f64 = 10.0;
+
 fn deviation(ratio: f64) -> String {
-    if ratio >= 1.0 {
+    if ratio >= MULTIPLE {
+        format!("{} times as much", significant(ratio))
+    } else if ratio >= 1.0 {
         format!("{} more", percent(ratio - 1.0))
     } else {
         format!("{} less", percent(1.0 - ratio))

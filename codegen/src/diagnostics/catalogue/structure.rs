@@ -336,9 +336,15 @@ pub(super) fn did_you_mean(word: &str, known: &[&str]) -> String {
 
 /// The closest known word, if one is close.
 pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_lowercase();
     known
         .iter()
-        .map(|near| (strsim::normalized_damerau_levenshtein(word, near), *near))
+        .map(|near| {
+            (
+                strsim::normalized_damerau_levenshtein(&word, &near.to_lowercase()),
+                *near,
+            )
+        })
         .filter(|(similarity, _)| *similarity >= 0.5)
         .max_by(|left, right| left.0.total_cmp(&right.0))
         .map(|(_, near)| near)

@@ -33,9 +33,9 @@ pub(super) fn finish(
     }
     if rated.si < LEAST_COUNTS * adc.gain * (1.0 - 1e-9) {
         let (current, gain) = (&rated.part, adc.gain);
-        let is_thousandth = rated.si < gain && 1e3 * rated.si <= adc.reach;
+        let is_thousandth = 1e3 * rated.si <= adc.reach;
         let error = if is_thousandth {
-            catalogue::current_below_a_count(current, &adc.part, rated.si, gain)
+            catalogue::thousandth_of_current(current, &adc.part, rated.si, gain)
         } else {
             catalogue::current_below_counts(current, &adc.part, rated.si, gain, LEAST_COUNTS)
         };

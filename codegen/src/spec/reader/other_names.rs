@@ -5,7 +5,7 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 12] = [
+const NAMES: [(&str, &[&str]); 13] = [
     (
         "poles",
         &[
@@ -34,6 +34,7 @@ const NAMES: [(&str, &[&str]); 12] = [
     ),
     ("rated_speed", &["nominal_speed", "rated_rpm", "rpm"]),
     ("resistance", &["r", "r_s", "phase_resistance"]),
+    ("winding", &["connection", "windings", "winding_type"]),
     ("inductance", &["l", "l_s", "phase_inductance"]),
     (
         "bus_voltage",
