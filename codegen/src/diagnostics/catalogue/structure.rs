@@ -204,6 +204,9 @@ pub fn missing_section(at: &Location, name: &str) -> Diagnostic {
                 "the section `controller` is missing; choose one, for example `controller: pdcc`"
                     .to_owned()
             }
+            _ if matches!(at, Location::File { .. }) => {
+                format!("the section `[{name}]` is missing; add it with its fields")
+            }
             _ => format!("the section `{name}` is missing; give it here or in a motor file"),
         },
     )

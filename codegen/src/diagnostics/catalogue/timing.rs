@@ -6,8 +6,19 @@ use crate::diagnostics::{
     rpm_at_least, rpm_at_most, significant,
 };
 
-/// No drive switches so fast: where only such a PWM frequency helped, resistance or inductance is wrong, hertz.
-const ABSURD_PWM: f64 = 500e3;
+/// L/R is far shorter than that of any motor, by the one of both that is `likely` a thousandfold off.
+/// `time_constant` = L/R in second.
+pub fn absurd_time_constant(likely: &Part, other: &Part, time_constant: f64) -> Diagnostic {
+    let message = format!(
+        "`{}`: {} is likely a thousandfold off: with {} L/R is {}, far shorter than that of any motor; check the number and the prefix of its unit",
+        likely.field,
+        likely.given,
+        other.quoted(),
+        engineering(time_constant, "s"),
+    );
+    let error = Diagnostic::new(Code::PeriodTooLong, &likely.location, message);
+    with_parts(error, &[other])
+}
 
 /// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest
 /// period of whole timer counts that is accepted, second, and the frequency of its PWM, hertz.
@@ -19,16 +30,6 @@ pub fn period_too_long(
     time_constant: f64,
     [longest, f_pwm]: [f64; 2],
 ) -> Diagnostic {
-    if f_pwm > ABSURD_PWM {
-        let message = format!(
-            "`inductance`: {} with a resistance of {} is an L/R of {}, far shorter than that of any motor: one of the two is likely a thousandfold off; check the numbers and the prefixes of their units",
-            inductance.given,
-            resistance.given,
-            engineering(time_constant, "s"),
-        );
-        let error = Diagnostic::new(Code::PeriodTooLong, &inductance.location, message);
-        return with_parts(error, &[resistance]);
-    }
     with_parts(
         Diagnostic::new(
             Code::PeriodTooLong,

@@ -141,6 +141,20 @@ pub(super) fn word(given: &str) -> Option<&'static str> {
     Some(row.1)
 }
 
+/// Fields that state an EMF, and the quantity of each.
+const OF_EMF: [(&str, Dimension); 3] = [
+    ("back_emf", Dimension::EmfConstant),
+    ("speed_constant", Dimension::SpeedConstant),
+    ("torque_constant", Dimension::TorqueConstant),
+];
+
+/// The other field that states an EMF by a quantity.
+pub(super) fn of_emf(name: &str, dimension: Dimension) -> Option<&'static str> {
+    let states_emf = OF_EMF.iter().any(|(field, _)| *field == name);
+    let other = OF_EMF.iter().find(|(_, quantity)| *quantity == dimension);
+    Some(other?.0).filter(|_| states_emf)
+}
+
 /// The field that takes what the name stands for.
 pub(super) fn meant(name: &str) -> Option<&'static str> {
     let name = name.to_lowercase();

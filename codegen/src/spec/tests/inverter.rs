@@ -573,17 +573,27 @@ fn a_thousandth_of_a_value_is_one_error() {
     };
     for (old, new, field) in [
         ("\"20 A\"", "\"20 mA\"", "`rated_current`: 20 mA is "),
-        (
-            "0.22 mH",
-            "0.22 uH",
-            "`inductance`: 0.22 uH per_phase with ",
-        ),
+        ("0.22 mH", "0.22 uH", "`inductance`: 0.22 uH per_phase is "),
+        ("135 mohm", "135 ohm", "`resistance`: 135 ohm per_phase is "),
     ] {
         let told = told(old, new);
         assert!(told.contains(field), "{told}");
         assert!(told.contains("likely a thousandfold off"), "{told}");
         assert_eq!(told.matches(": error[").count(), 1, "{told}");
     }
+    let text = told("2000 rpm", "40000 rpm");
+    assert!(
+        text.contains("HX0302") && !text.contains("HX0312"),
+        "{text}"
+    );
+    let text = told(
+        "0.1648 V/(rad/s) line_to_line peak",
+        "40.4 mNm/A block_mean",
+    );
+    assert!(
+        text.contains("write `torque_constant = \"40.4 mNm/A block_mean\"`"),
+        "{text}"
+    );
     let told = told("\"20 A\"", "\"100 mA\"");
     assert!(told.contains("or give at least 195.4 mA"), "{told}");
 }
