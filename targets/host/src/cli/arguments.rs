@@ -19,7 +19,7 @@ const AFTER_HELP: &str = "Without a command: the report on the 660 W motor.\n\
     A controller is `name:key=value,key=value`, e.g. `pdcc:emf=model,advance=2`; its keys are \
     those of the motor file's [controller], which `hexagen --help` lists.\n\
     Exit code 0: success; 1: a check failed, or the drive tripped; 2: bad input. With --json, standard \
-    output holds one JSON object, with code 2 nothing; messages are text on standard error.";
+    output holds one JSON object, with code 2 `{\"error\": text}`; the text is on standard error, too.";
 
 /// From a motor's data sheet to a verified fixed-point current controller
 #[derive(Debug, Parser)]
@@ -79,6 +79,32 @@ pub enum Command {
     Explain(explain::Options),
     /// Prints a script that completes the command line in a shell
     Completions(completions::Options),
+}
+
+impl Command {
+    /// Whether the result is one JSON object.
+    pub fn is_json(&self) -> bool {
+        match self {
+            Self::Report(options) => options.output.json,
+            Self::Generate(options) => options.json,
+            Self::Simulate(options) => options.run.json,
+            Self::Limit(options) => options.run.json,
+            Self::Faults(options) => options.run.json,
+            Self::Replay(options) => options.json,
+            Self::Halls(options) => options.json,
+            Self::Verify(options) => options.json,
+            Self::Prove(options) => options.json,
+            Self::Compare(options) => options.json,
+            Self::Reproduce(options) => options.json,
+            Self::Motors(options) => options.json,
+            Self::Boards(options) => options.json,
+            Self::New(options) => options.json,
+            Self::Check(options) => options.json,
+            Self::Advise(options) => options.json,
+            Self::Explain(options) => options.json,
+            Self::Completions(_) => false,
+        }
+    }
 }
 
 /// A motor, its board and a controller.

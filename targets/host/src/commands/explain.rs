@@ -49,7 +49,7 @@ impl Told {
         };
         let severity = if self.is_warning { "warning" } else { "error" };
         print_text(&format!(
-            "{} ({severity})\n{}\n\nMakes it:\n{}\n\nIs accepted:\n{}\n\n{}",
+            "{} ({severity})\n{}\n\nWrong:\n{}\n\nRight:\n{}\n\n{}",
             self.code,
             self.cause,
             lines(self.wrong),

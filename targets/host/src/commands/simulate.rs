@@ -3,7 +3,8 @@
 use super::cut::cut_by;
 use super::ran::Ran;
 use crate::cli::{
-    self, Failure, PlantArguments, RunArguments, parse_rpm, print_json, print_text, spinner, warn, write_file,
+    self, Failure, PlantArguments, RunArguments, parse_rpm, print_json, print_text, spinner, warn,
+    write_file,
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
@@ -88,7 +89,9 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let torque = arguments.torque(&drive);
     let deviations = options.plant(&drive);
     let plant = deviations.plant(&drive)?;
-    let mut run = deviations.options().run(&drive, options.start_rpm(), torque);
+    let mut run = deviations
+        .options()
+        .run(&drive, options.start_rpm(), torque);
     run.aim = aim(options, &drive, &plant, torque)?;
     check_duration(&run, &plant, options)?;
     let mut set_point = deviations.set_point(&drive, torque);
@@ -299,9 +302,8 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         outcome.ran.controller,
         outcome.ran.model.text(),
     ))?;
-    if outcome.tripped.is_some() {
-        // The trip itself is told on stderr.
-        return print_text("a drive that trips has no figures of merit");
+    if let Some(trip) = outcome.tripped {
+        return print_text(&format!("{trip}; it has no figures of merit"));
     }
     if let Some(speed) = outcome.speed {
         let of = speed.set_rpm.map_or("free shaft".to_owned(), |set_rpm| {

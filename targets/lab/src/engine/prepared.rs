@@ -112,7 +112,9 @@ pub fn prepare_ast(
 }
 
 fn core_of_board(ast: &SpecAst) -> Option<String> {
-    let names_core = OF_CORE.iter().any(|option| ast.controller.field(option).is_some());
+    let names_core = OF_CORE
+        .iter()
+        .any(|option| ast.controller.field(option).is_some());
     let file = ast.board.as_ref()?.file.as_ref()?;
     let (_, told) = file.source.iter().find(|(name, _)| name == "target")?;
     (!names_core).then(|| told.clone())
