@@ -166,7 +166,10 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
             torques: [torque, envelope.torque(rated)],
             speed: envelope.speed(torque),
             bus,
-            raised: Some(taken).filter(|taken| spec.inverter.bus.takes(*taken)),
+            raised: Some(taken).filter(|taken| {
+                let is_of_board = origins.board_bus().is_none_or(|most| *taken <= most);
+                is_of_board && spec.inverter.bus.takes(*taken)
+            }),
         };
         let given = origins.given(SPEED, "");
         catalogue::rating_beyond_bus((origins.at(SPEED), &given), &beyond)

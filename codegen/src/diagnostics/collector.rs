@@ -1,6 +1,6 @@
 //! Collecting errors so that one run reports all of them.
 
-use super::Diagnostic;
+use super::{Code, Diagnostic};
 
 /// All errors of one run; never empty.
 #[derive(Clone, Debug)]
@@ -62,6 +62,11 @@ impl Collector {
     /// Takes the error of a result; the value goes on.
     pub fn take<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         result.map_err(|error| self.push(error)).ok()
+    }
+
+    /// Whether an error of this code was taken.
+    pub fn has(&self, code: Code) -> bool {
+        self.errors.iter().any(|error| error.code == code)
     }
 
     /// Whether no error was taken so far.

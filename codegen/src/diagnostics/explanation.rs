@@ -32,7 +32,9 @@ const fn say(
 impl Code {
     /// The code of its text, with or without `HX` and leading zeros.
     pub fn from_text(text: &str) -> Option<Self> {
-        let upper = text.trim().to_uppercase();
+        // As in a message: `error[HX0302]`.
+        let code = text.trim().rsplit('[').next().unwrap_or_default();
+        let upper = code.trim_end_matches([']', ':']).to_uppercase();
         let digits = upper.strip_prefix("HX").unwrap_or(&upper);
         let number: u16 = digits.parse().ok()?;
         Self::ALL
@@ -162,10 +164,10 @@ impl Code {
                 "Write the unit behind the number.",
             ),
             Self::MissingBasis => say(
-                "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings differ by up to a factor of two, so none is guessed.",
+                "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings of R and L differ by a factor of two, those of an EMF by up to three, so none is guessed.",
                 "resistance = \"135 mohm\"",
                 "resistance = \"135 mohm per_phase\"",
-                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`.",
+                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`.",
             ),
             Self::WrongBasis => say(
                 "The value cannot refer to what the word says.",
@@ -293,7 +295,7 @@ impl Code {
                 "Change one of the two.",
             ),
             Self::TooFewPeriods => say(
-                "With fewer than six control periods in an electrical turn a sector can pass unseen.",
+                "With fewer than six control periods in an electrical turn a sector can pass unseen; an angle sensor needs 15, because differences of angles are believed up to 30 degrees only.",
                 "bus_voltage = \"48 V\"\nmaximum_speed = \"60000 rpm\"",
                 "bus_voltage = \"48 V\"\nmaximum_speed = \"3000 rpm\"",
                 "Raise the PWM frequency or lower maximum_speed.",
@@ -400,7 +402,7 @@ impl Code {
                 "Remove it, or choose that controller.",
             ),
             Self::OptionWithoutEffect => say(
-                "Beside another option this one changes nothing, so one of the two is a slip.",
+                "Beside another option this one changes nothing, so one of the two is not meant.",
                 "kind = \"pdcc\"\nemf = \"model\"\nemf_filter = 0.5",
                 "kind = \"pdcc\"\nemf = \"model\"",
                 "Remove one of the two.",

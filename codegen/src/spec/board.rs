@@ -65,6 +65,17 @@ impl SpecAst {
         whole
     }
 
+    /// Greatest bus voltage that the board states, volt.
+    pub(super) fn board_bus(&self) -> Option<f64> {
+        let board = self.board.as_ref()?;
+        let (most, _) = volts(
+            &board.file.as_ref()?.inverter,
+            "bus_max",
+            &board.name.location,
+        )?;
+        Some(most)
+    }
+
     /// The inverter with its board's fields under its own, and what is wrong between the two.
     pub(super) fn whole_inverter(&self) -> (Section, Vec<Diagnostic>) {
         let mut errors = vec![];
@@ -155,16 +166,19 @@ fn part(field: &'static str, written: &Field) -> Part {
     }
 }
 
+/// A voltage of a section, volt, and as written; none where it cannot be read.
+fn volts(section: &Section, name: &'static str, at: &Location) -> Option<(f64, Part)> {
+    let reader = Reader::new("inverter", section, schema::INVERTER, at);
+    let mut untold = Collector::new();
+    let given = reader.plain_quantity(&mut untold, name);
+    let is_right = untold.finish().is_none();
+    let given = given.filter(|_| is_right)?;
+    Some((given.si, given.part))
+}
+
 /// Voltages that are not the board's, or limits that leave none. Values that cannot be read are told of elsewhere.
 fn outside_of_board(whole: &Section, board: &Section, at: &Location) -> Option<Diagnostic> {
-    let volts = |section: &Section, name: &'static str| {
-        let reader = Reader::new("inverter", section, schema::INVERTER, at);
-        let mut untold = Collector::new();
-        let given = reader.plain_quantity(&mut untold, name);
-        let is_right = untold.finish().is_none();
-        let given = given.filter(|_| is_right)?;
-        Some((given.si, given.part))
-    };
+    let volts = |section: &Section, name: &'static str| volts(section, name, at);
     let (low, high) = (volts(board, "bus_min"), volts(board, "bus_max"));
     if let (Some((least, low)), Some((most, high))) = (&low, &high)
         && least > most

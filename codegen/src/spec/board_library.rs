@@ -33,9 +33,9 @@ const fn board(name: &'static str, text: &'static str) -> LibraryBoard {
     LibraryBoard { name, text }
 }
 
-/// The file of a library's board, as messages name it.
+/// A library's board, as messages name it: whoever reads them has no file of it.
 pub(super) fn file_of(name: &str) -> String {
-    format!("hexagen/boards/{name}.toml")
+    format!("board {name}")
 }
 
 /// The file of a board, as messages name it; none of a name that the library does not have.

@@ -56,7 +56,10 @@ impl FieldRule<'_> {
             .iter()
             .find(|(basis, _)| example.contains(basis.word()))
         else {
-            return vec![example.to_owned()];
+            // A basis that was not named is none to suggest.
+            let bare = example.trim_end_matches(" block_mean");
+            let is_named = named.contains(&Basis::BlockMean);
+            return vec![if is_named { example } else { bare }.to_owned()];
         };
         let is_named = references.iter().any(|(basis, _)| named.contains(basis));
         references

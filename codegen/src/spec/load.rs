@@ -3,6 +3,7 @@
 use super::ast::{Board, SpecAst};
 use super::toml_syntax::{parse_board, parse_toml};
 use crate::diagnostics::{Diagnostics, Location, catalogue};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Reads and parses the motor file `relative` under `root` (the crate's folder), and the board's file
@@ -21,13 +22,20 @@ pub fn load_motor_file(
     if is_absolute(relative) {
         return Err(catalogue::absolute_motor_file(at).into());
     }
-    let bytes = std::fs::read(root.join(relative)).map_err(|error| {
-        catalogue::unreadable_motor_file(at, relative, &error.kind().to_string())
-    })?;
+    let bytes = std::fs::read(root.join(relative))
+        .map_err(|error| catalogue::unreadable_motor_file(at, relative, &reason_of(&error)))?;
     files.push(relative.to_owned());
     let mut ast = parse_toml(&motor_text(bytes, relative)?, relative)?;
     ast.read_board(root, relative, files)?;
     Ok(ast)
+}
+
+/// Why a file cannot be read, in words; those of the system differ from one to the next.
+pub fn reason_of(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "there is none".to_owned(),
+        kind => kind.to_string(),
+    }
 }
 
 impl Board {
@@ -45,9 +53,8 @@ impl Board {
             return Err(catalogue::absolute_board_file(at).into());
         }
         let relative = folder.join(given).to_string_lossy().replace('\\', "/");
-        let bytes = std::fs::read(root.join(&relative)).map_err(|error| {
-            catalogue::unreadable_board_file(at, &relative, &error.kind().to_string())
-        })?;
+        let bytes = std::fs::read(root.join(&relative))
+            .map_err(|error| catalogue::unreadable_board_file(at, &relative, &reason_of(&error)))?;
         self.file = Some(parse_board(&motor_text(bytes, &relative)?, &relative)?);
         Ok(Some(relative))
     }
@@ -126,7 +133,7 @@ mod tests {
             .to_string();
         assert_eq!(
             error,
-            "macro:1:1: error[HX0108]: `motor`: the file \"hub.toml\" cannot be read (entity not found); give a path relative to the crate's Cargo.toml"
+            "macro:1:1: error[HX0108]: `motor`: the file \"hub.toml\" cannot be read (there is none); give a path relative to the crate's Cargo.toml"
         );
     }
 }

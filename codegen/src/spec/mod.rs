@@ -53,7 +53,7 @@ pub use controller::{
 pub use emf_shape::{proportional_current, zero_sum_integral};
 pub use envelope::Envelope;
 pub use harmonics::{Harmonics, ORDERS};
-pub use load::{load_motor_file, motor_text};
+pub use load::{load_motor_file, motor_text, reason_of};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};
 pub use model::{
     BUS_FRESH, BusCurrents, BusSource, EmfShape, Fade, HALL_ANGLES, InverterSpec, MotorSpec,

@@ -5,6 +5,7 @@
 
 use crate::closed_loop::Trip;
 use crate::engine::Prepared;
+use crate::motors::degrees_per_period;
 use crate::plant::PlantError;
 use crate::text::significant;
 use crate::times::Time;
@@ -21,8 +22,16 @@ const SPEEDS: [f64; 2] = [0.2, 1.0];
 /// up to 15 electrical degrees in a period.
 const RIPPLE: f64 = 7.0;
 
-/// Least torque at rated speed of a drive that works, percent.
-const LEAST_TORQUE: f64 = 50.0;
+/// Least torque at rated speed of a drive that works, percent; with a limit of the bus current, which is
+/// meant to cut it, half.
+const LEAST_TORQUE: f64 = 90.0;
+const LEAST_LIMITED: f64 = 50.0;
+
+/// Greatest ripple of a drive that works, peak to peak in percent of the mean.
+const GREATEST_RIPPLE: f64 = 50.0;
+
+/// Electrical degrees in a control period above which they are the likely cause of a trip.
+const COARSE: f64 = 15.0;
 
 /// Least part of the demanded torque that counts as all of it, percent. `limit`, which looks for the speed
 /// where the torque ends, takes 97 %.
@@ -30,6 +39,9 @@ const HELD: f64 = 99.0;
 
 /// Fewest ADC counts of the rated current for a smooth current.
 const COUNTS: f64 = 200.0;
+
+/// Part of the control period from which on a step leaves too little of it for anything else, percent.
+const FULL: f64 = 90.0;
 
 /// A run at one speed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -68,7 +80,8 @@ pub struct Judgement {
     pub motor: String,
     /// Controller variant.
     pub controller: String,
-    /// Whether it neither trips on its nominal bus nor loses half its torque up to rated speed.
+    /// Whether it neither trips on its nominal bus nor loses much of its torque up to rated speed, and its
+    /// step in control ends within the period on the core that is named.
     pub works: bool,
     /// The verdict in words.
     pub verdict: String,
@@ -163,18 +176,35 @@ impl Judgement {
     fn judge(&self, drive: &Prepared) -> (bool, String) {
         let (nominal, lowest) = self.runs();
         if let Some(trip) = nominal.iter().find_map(|point| point.tripped) {
-            return (false, format!("does not work: {trip}"));
+            let coarse = coarse_period(&drive.spec).unwrap_or_default();
+            return (false, format!("does not work: {trip}{coarse}"));
         }
         let [slow, rated] = nominal else {
             return (false, "does not work: it was not run".to_owned());
         };
+        let times = &drive.generated.interface.times;
+        let named = times.iter().find(|time| time.is_named);
+        let longest = named.map(longest_step);
+        if let Some(in_control) = named.and_then(too_long_in_control) {
+            return (false, format!("does not work: {in_control}"));
+        }
         let slowly = format!("at {:.0} rpm {}", slow.rpm, self.left(slow));
-        if slow.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
+        let least = match self.bus_current_limit_a {
+            Some(_) => LEAST_LIMITED,
+            None => LEAST_TORQUE,
+        };
+        if slow.torque_pct.unwrap_or(0.0) < least {
             return (false, format!("does not work: even {slowly}"));
         }
         let left = format!("at rated speed {}", self.left(rated));
-        if rated.torque_pct.unwrap_or(0.0) < LEAST_TORQUE {
-            return (false, format!("does not work: {left}"));
+        if rated.torque_pct.unwrap_or(0.0) < least {
+            return (false, format!("does not hold its rating: {left}"));
+        }
+        if let Some((_, text)) = self
+            .rippling(&drive.spec)
+            .filter(|(ripple, _)| *ripple > GREATEST_RIPPLE)
+        {
+            return (false, format!("does not hold its rating: {text}"));
         }
         let mut buts = Vec::new();
         if self.torque_nm < HELD / 100.0 * drive.rated_torque() {
@@ -191,14 +221,12 @@ impl Judgement {
             buts.push(left);
         }
         buts.extend(lowest.iter().filter_map(Point::lost_on_bus));
-        buts.extend(self.rippling(&drive.spec));
+        buts.extend(self.rippling(&drive.spec).map(|(_, text)| text));
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
         }
-        if self.overruns {
-            buts.push("a step may take longer than the period".to_owned());
-        }
+        buts.extend(longest.flatten());
         if !self.warnings.is_empty() {
             buts.push("see the warnings".to_owned());
         }
@@ -210,8 +238,8 @@ impl Judgement {
         (true, verdict)
     }
 
-    /// The greatest ripple on the nominal bus, if it is worth a word.
-    fn rippling(&self, spec: &Spec) -> Option<String> {
+    /// The greatest ripple on the nominal bus, percent and in words, if it is worth a word.
+    fn rippling(&self, spec: &Spec) -> Option<(f64, String)> {
         let (nominal, _) = self.runs();
         let ripples = nominal
             .iter()
@@ -219,7 +247,7 @@ impl Judgement {
         let (rpm, ripple) = ripples.max_by(|(_, one), (_, other)| one.total_cmp(other))?;
         let is_sampled = spec.inverter.rotor_sensing == RotorSensing::SampledHalls;
         let finer = if spec.controller.modulates() && is_sampled {
-            " (`hall_timer_clock`, a timer of the Hall edges, may lower it)"
+            " (a timer of the edges, `hall_timer_clock`, may lower it)"
         } else {
             ""
         };
@@ -227,7 +255,7 @@ impl Judgement {
             "the torque ripples by {} % at {rpm:.0} rpm{finer}",
             significant(ripple, 2)
         );
-        (ripple > RIPPLE).then_some(text)
+        (ripple > RIPPLE).then_some((ripple, text))
     }
 
     /// What is left of the torque at a speed, and what takes the rest.
@@ -264,6 +292,33 @@ impl Point {
     fn is_held(&self) -> bool {
         self.torque_pct.is_some_and(|torque| torque >= HELD)
     }
+}
+
+/// A clause on a rotor that turns far in a control period; none where it does not.
+fn coarse_period(spec: &Spec) -> Option<String> {
+    let degrees = degrees_per_period(spec);
+    let finer = match spec.inverter.rotor_sensing {
+        RotorSensing::SampledHalls => ", or state `hall_timer_clock`, a timer of the Hall edges",
+        _ => "",
+    };
+    (degrees > COARSE).then(|| {
+        format!(
+            "; at rated speed the rotor turns {} electrical degrees in a control period: raise `f_pwm`{finer}",
+            significant(degrees, 2)
+        )
+    })
+}
+
+/// What is told of a step whose longest path takes most of the control period, or more.
+fn longest_step(time: &StepTime) -> Option<String> {
+    let percent = time.percent_of_period(time.most_cycles() as u32);
+    (percent > FULL).then(|| format!("a step may take {percent} % of the period"))
+}
+
+/// What is told of a step that in control, not only in start and trips, takes longer than the control period.
+fn too_long_in_control(time: &StepTime) -> Option<String> {
+    let percent = time.percent_of_period(time.told().control_cycles);
+    (percent > 100.0).then(|| format!("a step in control may take {percent} % of the period"))
 }
 
 fn chosen(drive: &Prepared) -> Vec<Chosen> {

@@ -48,24 +48,21 @@ impl From<&StepTime> for Time {
     }
 }
 
-/// One line on the first chip: the core that is named, else the Cortex-M4. Estimates are told as about, at worst with
-/// their error.
+/// A line of the first core: that which is named, else the Cortex-M4. Estimates are told as about; the worst, with
+/// start, trips and braking, includes their error.
 pub fn sentence(times: &[StepTime]) -> String {
     let Some(time) = times.first() else {
         return "not known".to_owned();
     };
-    let told = time.told();
-    let chip = if time.is_named {
-        format!("{}, {}", time.chip.name, engineering(time.clock, "Hz"))
-    } else {
-        format!("assumed {}", time.chip.name)
-    };
-    let in_control = told.control_cycles;
+    let in_control = time.told().control_cycles;
     format!(
-        "{} {in_control} cycles in control, {} % of a period; at worst {} %; Rust, {chip}",
-        if time.is_bound() { "at most" } else { "about" },
+        "{} {in_control} cycles, {} % of a period, at worst {} %; Rust (C more), {}{}, {}",
+        if time.is_bound() { "up to" } else { "about" },
         time.percent_of_period(in_control),
         time.percent_of_period(time.most_cycles() as u32),
+        if time.is_named { "" } else { "if " },
+        time.chip.core,
+        engineering(time.clock, "Hz"),
     )
 }
 
@@ -84,17 +81,15 @@ mod tests {
             (sentence(&times), data)
         };
         let (counted, data) = told("pdcc");
-        assert!(counted.starts_with("at most "), "{counted}");
-        assert!(
-            counted.ends_with(" %; Rust, assumed STM32G431"),
-            "{counted}"
-        );
+        assert!(counted.starts_with("up to "), "{counted}");
+        let core = " %; Rust (C more), if Cortex-M4, 170 MHz";
+        assert!(counted.ends_with(core), "{counted}");
         assert_eq!(data.len(), 3);
         assert_eq!(data[0].error_pct, None);
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
         assert!(
-            estimated.ends_with(" %; Rust, STM32F030, 64 MHz"),
+            estimated.ends_with(" %; Rust (C more), Cortex-M0, 64 MHz"),
             "{estimated}"
         );
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));

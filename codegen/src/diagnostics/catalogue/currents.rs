@@ -167,9 +167,22 @@ pub fn hysteresis_reaches_trip(
     )
 }
 
-/// The largest set-point is too few ADC counts; `given`, `count` (one of them) in ampere.
-pub fn max_current_below_counts(
-    max: &Part,
+/// A rated current of too few ADC counts, a thousand times which the sensors show; `given`, `count` in ampere.
+pub fn thousandth_of_current(current: &Part, range: &Part, given: f64, count: f64) -> Diagnostic {
+    let message = format!(
+        "`{}`: {} is {} ADC counts of {}, likely a thousandfold off; check the number and the prefix of its unit",
+        current.field,
+        current.given,
+        significant(given / count),
+        engineering(count, "A"),
+    );
+    let error = Diagnostic::new(Code::AdcTooCoarse, &current.location, message);
+    with_parts(error, &[range])
+}
+
+/// The rated current or the largest set-point is too few ADC counts; `given`, `count` (one of them) in ampere.
+pub fn current_below_counts(
+    current: &Part,
     range: &Part,
     given: f64,
     count: f64,
@@ -178,10 +191,11 @@ pub fn max_current_below_counts(
     with_parts(
         Diagnostic::new(
             Code::AdcTooCoarse,
-            &max.location,
+            &current.location,
             format!(
-                "`max_current`: {} is {} ADC counts of {}, below the minimum of {least} (an error of 5 % by half a count); {}, raise `adc_bits`, or give at least {}",
-                max.given,
+                "`{}`: {} is {} ADC counts of {}, below the minimum of {least} (an error of 5 % by half a count); {}, raise `adc_bits`, or give at least {}",
+                current.field,
+                current.given,
                 significant(given / count),
                 engineering(count, "A"),
                 narrow(range),

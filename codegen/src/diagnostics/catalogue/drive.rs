@@ -3,7 +3,7 @@
 use super::internal;
 use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most,
+    Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most, significant,
 };
 use std::fmt;
 
@@ -68,6 +68,8 @@ pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagno
 pub enum BusRemedy {
     /// Speed reached at rated current, mechanical rad/s.
     Speed(f64),
+    /// The same, of which sensors in the low legs, whose window is not known yet, take a part.
+    BelowSpeed(f64),
     /// Current at standstill, ampere, below the rated current.
     Current(f64),
 }
@@ -78,6 +80,11 @@ impl fmt::Display for BusRemedy {
             Self::Speed(reachable) => {
                 write!(out, "lower `rated_speed` to {}", rpm_at_most(reachable))
             }
+            Self::BelowSpeed(reachable) => write!(
+                out,
+                "lower `rated_speed` below {} (reading the sensors in the low legs takes a part of the bus, too)",
+                rpm_at_most(reachable)
+            ),
             Self::Current(reachable) => {
                 let most = engineering(at_most(reachable), "A");
                 write!(out, "lower `rated_current` below {most}")
@@ -127,7 +134,7 @@ pub fn thousandfold(code: Code, value: &Part, [bus, taken]: [f64; 2]) -> Diagnos
 
 /// EMF and resistive drop of the rating exceed the bus. In volt: the bus; `emf`: line to line at
 /// rated speed; `drop`: of rated current between two terminals; `raised`: the bus that holds the rating, none
-/// where it is above the limit of a measured one.
+/// where it is above the limit of a measured one, or of the board.
 pub fn bus_too_low(
     bus: &Part,
     [speed, current, stated, resistance]: [&Part; 4],
@@ -194,13 +201,20 @@ pub struct Beyond {
     pub speed: Option<f64>,
     /// Nominal bus voltage, volt.
     pub bus: f64,
-    /// The one that the rating takes, volt; none above the limit of a measured bus.
+    /// The one that the rating takes, volt; none above the limit of a measured bus, or of the board.
     pub raised: Option<f64>,
 }
 
 /// A rating at which the bus cuts the current's shape. `speed`: the rated speed and where it was written.
 pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Diagnostic {
     let [rated, held] = beyond.torques.map(|torque| engineering(torque, "Nm"));
+    let drives = if beyond.torques[1] > 0.0 {
+        format!("drives the whole current up to {held} of the rating's {rated}, and beyond that")
+    } else {
+        format!(
+            "does not drive the whole current of any torque, let alone of the rating's {rated}:"
+        )
+    };
     let raise = beyond.raised.map_or_else(String::new, |raised| {
         let raised = engineering(at_least(raised), "V");
         format!("raise `bus_voltage` to {raised}, or ")
@@ -212,7 +226,7 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         Code::RatingBeyondBus,
         at,
         format!(
-            "`rated_speed`: {speed}: there the bus of {} drives the whole current up to {held} of the rating's {rated}, and beyond that the torque ripples and falls{lasts}; {raise}lower `rated_speed`",
+            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`",
             engineering(beyond.bus, "V"),
         ),
     )
@@ -323,8 +337,13 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
     )
 }
 
+/// Beyond it percents are harder to read than a factor.
+const MULTIPLE: f64 = 10.0;
+
 fn deviation(ratio: f64) -> String {
-    if ratio >= 1.0 {
+    if ratio >= MULTIPLE {
+        format!("{} times as much", significant(ratio))
+    } else if ratio >= 1.0 {
         format!("{} more", percent(ratio - 1.0))
     } else {
         format!("{} less", percent(1.0 - ratio))

@@ -204,6 +204,9 @@ pub fn missing_section(at: &Location, name: &str) -> Diagnostic {
                 "the section `controller` is missing; choose one, for example `controller: pdcc`"
                     .to_owned()
             }
+            _ if matches!(at, Location::File { .. }) => {
+                format!("the section `[{name}]` is missing; add it with its fields")
+            }
             _ => format!("the section `{name}` is missing; give it here or in a motor file"),
         },
     )
@@ -336,9 +339,15 @@ pub(super) fn did_you_mean(word: &str, known: &[&str]) -> String {
 
 /// The closest known word, if one is close.
 pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_lowercase();
     known
         .iter()
-        .map(|near| (strsim::normalized_damerau_levenshtein(word, near), *near))
+        .map(|near| {
+            (
+                strsim::normalized_damerau_levenshtein(&word, &near.to_lowercase()),
+                *near,
+            )
+        })
         .filter(|(similarity, _)| *similarity >= 0.5)
         .max_by(|left, right| left.0.total_cmp(&right.0))
         .map(|(_, near)| near)

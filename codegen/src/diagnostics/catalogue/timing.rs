@@ -6,6 +6,20 @@ use crate::diagnostics::{
     rpm_at_least, rpm_at_most, significant,
 };
 
+/// L/R is far shorter than that of any motor, by the one of both that is `likely` a thousandfold off.
+/// `time_constant` = L/R in second.
+pub fn absurd_time_constant(likely: &Part, other: &Part, time_constant: f64) -> Diagnostic {
+    let message = format!(
+        "`{}`: {} is likely a thousandfold off: with {} L/R is {}, far shorter than that of any motor; check the number and the prefix of its unit",
+        likely.field,
+        likely.given,
+        other.quoted(),
+        engineering(time_constant, "s"),
+    );
+    let error = Diagnostic::new(Code::PeriodTooLong, &likely.location, message);
+    with_parts(error, &[other])
+}
+
 /// R Ts/L exceeds 0.5. `t_s` in second, `time_constant` = L/R in second, `longest`: the longest
 /// period of whole timer counts that is accepted, second, and the frequency of its PWM, hertz.
 pub fn period_too_long(

@@ -136,6 +136,18 @@ pub fn wrong_dimension(
     )
 }
 
+/// A quantity that another field takes.
+pub fn quantity_of_other_field(
+    at: &Location,
+    field: &str,
+    given: &str,
+    got: &str,
+    meant: &str,
+) -> Diagnostic {
+    let message = format!("`{field}`: {given} is {got}; write `{meant}: {given}`");
+    Diagnostic::new(Code::WrongDimension, at, message)
+}
+
 /// A number without unit.
 pub fn missing_unit(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
     Diagnostic::new(

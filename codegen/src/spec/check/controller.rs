@@ -77,7 +77,14 @@ pub(super) fn read(
     {
         check_torque_learning(&reader, inverter, spec.common().field_weakening, errors);
     }
-    angle::refuse_halls(&reader, motor, &["hall_capture", HALL_LEARNING], errors);
+    let learns = reader.field(HALL_LEARNING);
+    let learns = learns.is_some_and(|field| field.value.to_string() != "off");
+    let of_halls: &[&str] = if learns {
+        &["hall_capture", HALL_LEARNING]
+    } else {
+        &["hall_capture"]
+    };
+    angle::refuse_halls(&reader, motor, of_halls, errors);
     let sensing = match motor.rotor {
         Some(RotorSource::Halls) => {
             let capture = read_capture(&reader, inverter, errors);
@@ -94,7 +101,7 @@ pub(super) fn read(
 /// The places of Hall sensors are learnt from the times between their edges.
 fn check_learning(reader: &Reader, capture: Option<RotorSensing>, errors: &mut Collector) {
     if capture == Some(RotorSensing::SampledHalls) {
-        let why = "at samples the time between two edges is known to a control period only";
+        let why = "without `hall_timer_clock` in `inverter` the time between two edges is known to a control period only";
         refuse(
             reader,
             HALL_LEARNING,

@@ -31,6 +31,17 @@ pub(super) fn finish(
         errors.push(error);
         return None;
     }
+    if rated.si < LEAST_COUNTS * adc.gain * (1.0 - 1e-9) {
+        let (current, gain) = (&rated.part, adc.gain);
+        let is_thousandth = 1e3 * rated.si <= adc.reach;
+        let error = if is_thousandth {
+            catalogue::thousandth_of_current(current, &adc.part, rated.si, gain)
+        } else {
+            catalogue::current_below_counts(current, &adc.part, rated.si, gain, LEAST_COUNTS)
+        };
+        errors.push(error);
+        return None;
+    }
     let drive = drive?;
     if let Some(error) = too_few_counts(reader, adc, drive.max_current) {
         errors.push(error);
@@ -103,7 +114,7 @@ fn beyond_sensors(
 fn too_few_counts(reader: &Reader, adc: &Adc, max: f64) -> Option<Diagnostic> {
     (max < LEAST_COUNTS * adc.gain * (1.0 - 1e-9)).then(|| {
         let part = reader.part("max_current", || engineering(max, "A"));
-        catalogue::max_current_below_counts(&part, &adc.part, max, adc.gain, LEAST_COUNTS)
+        catalogue::current_below_counts(&part, &adc.part, max, adc.gain, LEAST_COUNTS)
     })
 }
 

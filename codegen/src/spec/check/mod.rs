@@ -54,11 +54,13 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let mut warnings = vec![];
     let contradicts =
         consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
-    relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
-    if !contradicts {
+    let period = relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
+    // A wrong R or L is told of once.
+    if !contradicts && period != Some(true) {
         // Torque and EMF in one wrong basis are one mistake.
         let reference = controller.as_ref().map(|spec| spec.common().reference);
-        relations::check_bus(&motor_reader, &motor, &inverter, reference, &mut errors);
+        let context = (reference, ast.board_bus());
+        relations::check_bus(&motor_reader, &motor, &inverter, context, &mut errors);
     }
     sensing_window::check(
         &inverter_reader,

@@ -12,6 +12,7 @@ pub struct Origins {
     name: Location,
     sections: BTreeMap<&'static str, Location>,
     fields: BTreeMap<String, Origin>,
+    board_bus: Option<f64>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -38,6 +39,7 @@ impl Origins {
             name: ast.name.location.clone(),
             sections: BTreeMap::new(),
             fields: BTreeMap::new(),
+            board_bus: ast.board_bus(),
             warnings,
         };
         origins.take("motor", &ast.motor);
@@ -99,6 +101,11 @@ impl Origins {
         let is_given = |field: &&str| self.is_given(&format!("motor.{field}"));
         let field = emf::FIELDS.into_iter().find(is_given);
         self.of_motor(field.unwrap_or(emf::FIELDS[0]))
+    }
+
+    /// Greatest bus voltage that the board states, volt, whether or not the bus is measured.
+    pub fn board_bus(&self) -> Option<f64> {
+        self.board_bus
     }
 
     /// What the checks warn of: values that fit, and are probably not meant so.

@@ -6,7 +6,7 @@ use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Code, Collector, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
-use crate::spec::{BusSource, Envelope, MotorSpec, Reference, RotorSensing};
+use crate::spec::{BusSource, CurrentSensing, Envelope, MotorSpec, Reference, RotorSensing};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.
@@ -26,42 +26,62 @@ const LEAST_WITH_ANGLE: f64 = 15.0;
 /// speeds up, or sensors out of place, must not skip a sector before seven edges have told the speed.
 const LEAST_WATCHED: f64 = 8.0;
 
-/// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R.
+/// No drive switches so fast: where only such a PWM frequency helped, resistance or inductance is wrong, hertz.
+const ABSURD_PWM: f64 = 500e3;
+
+/// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R. Tells whether R or L is wrong.
 pub(super) fn check_period(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
     errors: &mut Collector,
-) -> Option<()> {
+) -> Option<bool> {
     let (period, t_s) = (inverter.period.as_ref()?, inverter.t_s?);
     let time_constant = motor.inductance? / motor.resistance?;
     if t_s / time_constant > GREATEST_DECAY * (1.0 + 1e-9) {
         let resistance = reader.part("resistance", String::new);
         let inductance = reader.part("inductance", String::new);
         let longest = inverter.period_within(GREATEST_DECAY * time_constant);
+        let f_pwm = f64::from(inverter.pwm_per_control) / longest;
+        if f_pwm > ABSURD_PWM {
+            let drop =
+                motor.resistance? * motor.rated_current.as_ref().map_or(0.0, |given| given.si);
+            let bus = inverter
+                .v_bus
+                .as_ref()
+                .map_or(f64::INFINITY, |given| given.si);
+            let (likely, other) = if drop > bus {
+                (resistance, inductance)
+            } else {
+                (inductance, resistance)
+            };
+            let error = catalogue::absurd_time_constant(&likely, &other, time_constant);
+            errors.push(error);
+            return Some(true);
+        }
         errors.push(catalogue::period_too_long(
             &period.part,
             &resistance,
             &inductance,
             t_s,
             time_constant,
-            [longest, f64::from(inverter.pwm_per_control) / longest],
+            [longest, f_pwm],
         ));
     }
-    Some(())
+    Some(false)
 }
 
 /// Most of the bus that EMF and resistive drop of a rating may take: beyond it a value is rather wrong.
 const MOST_OF_BUS: f64 = 1.25;
 
 /// Accepted: a bus that covers the line-to-line EMF at rated speed, and with what rated current drops
-/// between two terminals misses that by a little. Refused: a rating far beyond, of which a value is wrong. An
+/// between two terminals misses that by a little. `board_bus`: the greatest bus voltage that the board states, volt. Refused: a rating far beyond, of which a value is wrong. An
 /// accepted rating is not promised to be held: the envelope of the whole drive tells.
 pub(super) fn check_bus(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
-    reference: Option<Reference>,
+    (reference, board_bus): (Option<Reference>, Option<f64>),
     errors: &mut Collector,
 ) -> Option<()> {
     let (bus, speed, current) = (
@@ -84,6 +104,8 @@ pub(super) fn check_bus(
         .torque_rating()
         .max(set_point * envelope.torque_constant());
     let raised = envelope.bus_voltage(speed.si, torque / envelope.torque_constant());
+    // Peaks of EMF and drop that do not coincide are told by their sum.
+    let raised = raised.max(emf + drop);
     let [resistance, inductance] =
         ["resistance", "inductance"].map(|name| reader.part(name, String::new));
     let is_confirmed = motor.emf.len() > 1 || motor.rated_torque.is_some();
@@ -104,10 +126,16 @@ pub(super) fn check_bus(
             is_peak: stated.basis.contains(&Basis::Peak),
         },
         (
-            Some(raised).filter(|raised| inverter.bus.is_none_or(|bus| bus.takes(*raised))),
+            Some(raised).filter(|raised| {
+                let is_of_board = board_bus.is_none_or(|most| *raised <= most);
+                is_of_board && inverter.bus.is_none_or(|bus| bus.takes(*raised))
+            }),
             envelope.speed(torque).map_or(
                 catalogue::BusRemedy::Current(current.si * bus.si / drop),
-                catalogue::BusRemedy::Speed,
+                |speed| match inverter.sensing.place {
+                    Some(CurrentSensing::LowSide(_)) => catalogue::BusRemedy::BelowSpeed(speed),
+                    _ => catalogue::BusRemedy::Speed(speed),
+                },
             ),
         ),
     ));
@@ -178,7 +206,9 @@ pub(super) fn check_speeds(
     } else {
         LEAST_PERIODS
     };
-    if periods < least * (1.0 - 1e-9) {
+    // By default it follows from the rated speed, whose own error suffices.
+    let is_stated = inverter.maximum_speed.is_some();
+    if periods < least * (1.0 - 1e-9) && (is_stated || !errors.has(Code::BusTooLow)) {
         let fastest = maximum * periods / least;
         let f_pwm =
             f64::from(inverter.pwm_per_control) / inverter.period_within(t_s * periods / least);

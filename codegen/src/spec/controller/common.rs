@@ -767,6 +767,10 @@ fn read_threshold(reader: &Reader, drive: &Surroundings, errors: &mut Collector)
     let (rated, rated_part) = drive.rated_current.as_ref()?;
     let least = drive.adc_gain.unwrap_or(0.0);
     let default = COMMUTATION_THRESHOLD.min(rated / 4.0).max(least);
+    // A rated current below a count is an error of its own.
+    if given.is_none() && *rated <= least {
+        return None;
+    }
     let threshold = given.map_or(default, |given| given.si);
     let part = reader.part("commutation_threshold", || engineering(threshold, "A"));
     if threshold >= *rated {

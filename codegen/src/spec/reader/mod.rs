@@ -240,9 +240,8 @@ impl<'a> Reader<'a> {
                 &self.at,
             ))
         };
-        // All are read, so that all errors are told at once.
-        let read: Vec<Option<T>> = values.into_iter().map(read_one).collect();
-        read.into_iter().collect()
+        // Up to the first in error: what one value lacks, such as its unit, the others mostly lack, too.
+        values.into_iter().map(read_one).collect()
     }
 
     fn field_rule<'n>(&self, name: &'n str) -> FieldRule<'n> {

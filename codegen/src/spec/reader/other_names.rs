@@ -5,7 +5,7 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 8] = [
+const NAMES: [(&str, &[&str]); 13] = [
     (
         "poles",
         &[
@@ -32,7 +32,24 @@ const NAMES: [(&str, &[&str]); 8] = [
             "k_e",
         ],
     ),
-    ("rated_speed", &["nominal_speed"]),
+    ("rated_speed", &["nominal_speed", "rated_rpm", "rpm"]),
+    ("resistance", &["r", "r_s", "phase_resistance"]),
+    ("winding", &["connection", "windings", "winding_type"]),
+    ("inductance", &["l", "l_s", "phase_inductance"]),
+    (
+        "bus_voltage",
+        &["supply_voltage", "battery_voltage", "dc_link_voltage"],
+    ),
+    (
+        "f_pwm",
+        &[
+            "pwm_frequency",
+            "pwm_freq",
+            "switching_frequency",
+            "switching_freq",
+            "f_sw",
+        ],
+    ),
     ("rated_torque", &["nominal_torque", "continuous_torque"]),
     (
         "rated_current",
@@ -122,6 +139,20 @@ pub(super) fn kin(given: &str) -> Option<&'static str> {
 pub(super) fn word(given: &str) -> Option<&'static str> {
     let row = WORDS.iter().find(|(other, _)| *other == given)?;
     Some(row.1)
+}
+
+/// Fields that state an EMF, and the quantity of each.
+const OF_EMF: [(&str, Dimension); 3] = [
+    ("back_emf", Dimension::EmfConstant),
+    ("speed_constant", Dimension::SpeedConstant),
+    ("torque_constant", Dimension::TorqueConstant),
+];
+
+/// The other field that states an EMF by a quantity.
+pub(super) fn of_emf(name: &str, dimension: Dimension) -> Option<&'static str> {
+    let states_emf = OF_EMF.iter().any(|(field, _)| *field == name);
+    let other = OF_EMF.iter().find(|(_, quantity)| *quantity == dimension);
+    Some(other?.0).filter(|_| states_emf)
 }
 
 /// The field that takes what the name stands for.

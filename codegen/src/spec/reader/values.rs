@@ -123,9 +123,10 @@ impl<'a> Reader<'a> {
         };
         if !dimensions.contains(&dimension) {
             let (got, wanted) = (dimension.name(), dimensions[0].name());
-            errors.push(catalogue::wrong_dimension(
-                at, name, text, got, wanted, &examples,
-            ));
+            errors.push(match other_names::of_emf(name, dimension) {
+                Some(meant) => catalogue::quantity_of_other_field(at, name, text, got, meant),
+                None => catalogue::wrong_dimension(at, name, text, got, wanted, &examples),
+            });
             return None;
         }
         self.within(

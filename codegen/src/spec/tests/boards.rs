@@ -262,13 +262,32 @@ fn a_board_that_there_is_not_is_told_by_name() {
     assert!(told("\"boards/other.toml\"").contains("cannot be read"));
     assert!(told("\"/boards/mine.toml\"").contains("absolute"));
     assert!(told("vesc").contains("in quotes"));
-    // A file of the library names itself.
+    // A board of the library names itself.
     let text = folder.check(r#"Rear { motor: "motors/hub.toml", board: "st-b-g431b-esc1" }"#);
     let text = text.0.expect_err("25 V are its most");
+    assert!(text.contains("board st-b-g431b-esc1:6:11: note"), "{text}");
+}
+
+/// A bus above the board's is no remedy, and a speed is one only below what the window leaves.
+#[test]
+fn remedies_keep_to_the_board() {
+    const HUB: &str = "board = \"hoverboard\"\n[motor]\npoles = 30\nresistance = \"0.4 ohm terminal\"\ninductance = \"0.68 mH terminal\"\nback_emf = \"16 rpm/V line_to_line peak\"\nemf_shape = \"trapezoidal\"\nrated_current = \"10 A\"\nrated_speed = \"700 rpm\"\n[inverter]\nbus_voltage = \"36 V\"\n[controller]\nkind = \"pdcc\"\n";
+    let told = |text: &str| {
+        let checked = crate::spec::parse_toml(text, "hub.toml");
+        let checked = checked.and_then(|ast| crate::spec::check(&ast));
+        checked.map_err(|errors| errors.to_string())
+    };
+    let text = told(HUB).expect_err("the EMF alone takes the bus");
     assert!(
-        text.contains("hexagen/boards/st-b-g431b-esc1.toml:6:11: note"),
+        text.contains("HX0302") && !text.contains("raise `bus_voltage`"),
         "{text}"
     );
+    assert!(text.contains("lower `rated_speed` below "), "{text}");
+    let (spec, origins) = told(&HUB.replace("700 rpm", "540 rpm")).expect("passes");
+    let warnings = crate::pipeline::warnings(&spec, &origins, &[]);
+    let text: String = warnings.iter().map(ToString::to_string).collect();
+    assert!(text.contains("HX0604"), "{text}");
+    assert!(!text.contains("raise `bus_voltage`"), "{text}");
 }
 
 #[test]

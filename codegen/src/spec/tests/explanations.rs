@@ -110,7 +110,14 @@ fn each_code_has_an_explanation_of_its_own() {
 
 #[test]
 fn codes_are_found_by_their_text() {
-    for text in ["HX0302", "hx0302", "HX302", "302", " 0302 "] {
+    for text in [
+        "HX0302",
+        "hx0302",
+        "HX302",
+        "302",
+        " 0302 ",
+        "error[HX0302]:",
+    ] {
         assert_eq!(Code::from_text(text), Some(Code::BusTooLow), "{text}");
     }
     for text in ["", "HX", "HX9999", "bus"] {

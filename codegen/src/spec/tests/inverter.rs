@@ -559,5 +559,41 @@ fn hall_angles_are_near_their_places_whatever_the_turn() {
     let told = angles("\"-30 deg\", \"30 deg\"").expect_err("two");
     assert!(told.contains("2 angles instead of 6"), "{told}");
     let told = angles("-30, 30, 90, 150, 210, 270").expect_err("no unit");
-    assert!(told.contains("error[HX0204]"), "{told}");
+    assert_eq!(told.matches("error[HX0204]").count(), 1, "{told}");
+}
+
+/// A slip of the prefix is told of the value itself, once.
+#[test]
+fn a_thousandth_of_a_value_is_one_error() {
+    let lines = format!("{TIMER}adc_range = \"40 A\"\n[controller]\nkind = \"pdcc\"\n");
+    let told = |old: &str, new: &str| {
+        let text = format!("{MOTOR}{lines}").replace(old, new);
+        let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+        checked.expect_err("is in error").to_string()
+    };
+    for (old, new, field) in [
+        ("\"20 A\"", "\"20 mA\"", "`rated_current`: 20 mA is "),
+        ("0.22 mH", "0.22 uH", "`inductance`: 0.22 uH per_phase is "),
+        ("135 mohm", "135 ohm", "`resistance`: 135 ohm per_phase is "),
+    ] {
+        let told = told(old, new);
+        assert!(told.contains(field), "{told}");
+        assert!(told.contains("likely a thousandfold off"), "{told}");
+        assert_eq!(told.matches(": error[").count(), 1, "{told}");
+    }
+    let text = told("2000 rpm", "40000 rpm");
+    assert!(
+        text.contains("HX0302") && !text.contains("HX0312"),
+        "{text}"
+    );
+    let text = told(
+        "0.1648 V/(rad/s) line_to_line peak",
+        "40.4 mNm/A block_mean",
+    );
+    assert!(
+        text.contains("write `torque_constant = \"40.4 mNm/A block_mean\"`"),
+        "{text}"
+    );
+    let told = told("\"20 A\"", "\"100 mA\"");
+    assert!(told.contains("or give at least 195.4 mA"), "{told}");
 }

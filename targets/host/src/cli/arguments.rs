@@ -1,5 +1,6 @@
 //! The program's arguments, as clap reads them.
 
+use super::output::COLUMNS;
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
     advise, boards, check, compare, completions, explain, faults, generate, halls, limit, motors,
@@ -16,13 +17,16 @@ use std::str::FromStr;
 const AFTER_HELP: &str = "Without a command: the report on the 660 W motor.\n\
     A motor is a TOML file or a name of the library (`hexagen motors`).\n\
     A controller is `name:key=value,key=value`, e.g. `pdcc:emf=model,advance=2`; its keys are \
-    those of the motor file's [controller], which `hexagen --help` lists.";
+    those of the motor file's [controller], which `hexagen --help` lists.\n\
+    Exit code 0: success; 1: a check failed, or the drive tripped; 2: bad input. With --json, standard \
+    output holds one JSON object, with code 2 `{\"error\": text}`; the text is on standard error, too.";
 
 /// From a motor's data sheet to a verified fixed-point current controller
 #[derive(Debug, Parser)]
 #[command(
     name = "hexagen",
     version,
+    max_term_width = COLUMNS,
     after_help = AFTER_HELP,
     args_conflicts_with_subcommands = true,
     after_long_help = format!("{AFTER_HELP}\n\nControllers and their options:\n{}", option_help())
@@ -75,6 +79,32 @@ pub enum Command {
     Explain(explain::Options),
     /// Prints a script that completes the command line in a shell
     Completions(completions::Options),
+}
+
+impl Command {
+    /// Whether the result is one JSON object.
+    pub fn is_json(&self) -> bool {
+        match self {
+            Self::Report(options) => options.output.json,
+            Self::Generate(options) => options.json,
+            Self::Simulate(options) => options.run.json,
+            Self::Limit(options) => options.run.json,
+            Self::Faults(options) => options.run.json,
+            Self::Replay(options) => options.json,
+            Self::Halls(options) => options.json,
+            Self::Verify(options) => options.json,
+            Self::Prove(options) => options.json,
+            Self::Compare(options) => options.json,
+            Self::Reproduce(options) => options.json,
+            Self::Motors(options) => options.json,
+            Self::Boards(options) => options.json,
+            Self::New(options) => options.json,
+            Self::Check(options) => options.json,
+            Self::Advise(options) => options.json,
+            Self::Explain(options) => options.json,
+            Self::Completions(_) => false,
+        }
+    }
 }
 
 /// A motor, its board and a controller.

@@ -6,8 +6,16 @@ use hexagen_lab::LabError;
 use hexagen_lab::closed_loop::Trip;
 use hexagen_lab::engine::BuildError;
 use hexagen_lab::plant::PlantError;
+use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// The JSON object of a command that has no result.
+#[derive(Clone, Debug, Serialize)]
+pub struct ErrorAlone {
+    /// The message.
+    pub error: String,
+}
 
 /// A command's failure; the text is complete, the kind gives the exit code.
 #[derive(Debug, thiserror::Error)]
@@ -58,6 +66,12 @@ impl Failure {
     /// Prints the failure on stderr.
     pub fn print(&self) {
         super::note(&self.to_string());
+    }
+
+    /// What takes the place of a result; none where the result is on stdout already.
+    pub fn without_result(&self) -> Option<ErrorAlone> {
+        let error = self.to_string();
+        (!matches!(self, Self::Check(_))).then_some(ErrorAlone { error })
     }
 
     /// 1 for a failed check, 2 for bad input.

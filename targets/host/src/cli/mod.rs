@@ -2,7 +2,8 @@
 //!
 //! Exit codes: 0: success; 1: a check failed, or the drive tripped; 2: bad input, or the result
 //! cannot be written. Results go to stdout, everything else to stderr. With `--json`, stdout holds
-//! exactly one JSON object.
+//! exactly one JSON object, which of bad input has the member `error` alone; but where the command line itself
+//! cannot be read.
 
 mod arguments;
 mod failure;
@@ -44,6 +45,7 @@ pub fn run() -> ExitCode {
         output: arguments.output,
     };
     let command = arguments.command.unwrap_or(Command::Report(report));
+    let is_json = command.is_json();
     let outcome = match command {
         Command::Report(options) => commands::report::run(&options),
         Command::Generate(options) => commands::generate::run(&options),
@@ -68,6 +70,10 @@ pub fn run() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure.print();
+            if is_json && let Some(error) = failure.without_result() {
+                // Nobody is left to tell that this failed, too.
+                let _ = print_json(&error);
+            }
             failure.exit_code()
         }
     }

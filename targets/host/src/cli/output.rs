@@ -25,8 +25,8 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Columns of a line that is meant to be read at a glance.
-const COLUMNS: usize = 100;
+/// Most columns of a line.
+pub(super) const COLUMNS: usize = 100;
 
 /// A row in lines of at most 100 columns, the further ones below its text.
 pub fn wrapped_row(row: &str) -> String {
@@ -44,7 +44,26 @@ fn filled(text: &str, indent: &str) -> String {
         .subsequent_indent(indent)
         .break_words(false)
         .word_splitter(textwrap::WordSplitter::NoHyphenation);
-    textwrap::fill(text, options)
+    textwrap::fill(&glued(text), options).replace(GLUE, " ")
+}
+
+/// A space at which no line ends.
+const GLUE: char = '\u{a0}';
+
+/// The text with its numbers glued to their units.
+fn glued(text: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let is_unit = |letter: &char| letter.is_alphabetic() || *letter == '%';
+    let glue = |(place, &letter): (usize, &char)| {
+        let before = place.checked_sub(1).map(|before| letters[before]);
+        let is_behind_number = before.is_some_and(|before| before.is_ascii_digit());
+        if letter == ' ' && is_behind_number && letters.get(place + 1).is_some_and(is_unit) {
+            GLUE
+        } else {
+            letter
+        }
+    };
+    letters.iter().enumerate().map(glue).collect()
 }
 
 /// Prints lines to stderr, with colours on a terminal (unless `NO_COLOR` is set). There is no place
@@ -146,6 +165,13 @@ mod tests {
         ] {
             assert_eq!(coloured(line), expected);
         }
+    }
+
+    #[test]
+    fn no_line_ends_between_a_number_and_its_unit() {
+        let text = format!("{} 0.27 % and 12 V", "x".repeat(94));
+        let told = paragraph(&text);
+        assert_eq!(told.lines().nth(1), Some("0.27 % and 12 V"), "{told}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! `hexagen boards`: the library of boards, what each states, which motors of the library fit it, and why
 //! the others do not.
 
-use crate::cli::{Bar, Failure, print_json, print_table, print_text};
+use crate::cli::{Bar, Failure, paragraph, print_json, print_table, print_text};
 use clap::Args;
 use hexagen_lab::boards::{BoardField, BoardWithMotors, Fit, board_with_motors, library_of_boards};
 use hexagen_lab::report::Table;
@@ -43,6 +43,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     for board in &boards {
         print_table(&table_of_fields(board))?;
     }
+    print_text(&paragraph(UNSTATED))?;
     let motors = boards.iter().flat_map(|board| &board.motors);
     for Fit { motor, reason, .. } in motors {
         // What stands first decides: the rest often follows from it.
@@ -52,6 +53,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     Ok(())
 }
+
+/// What a reader may expect of a board and does not find.
+const UNSTATED: &str = "No board states what its switches stand: compare `max_current` and `trip_current` with their data sheet yourself.";
 
 fn table(boards: &[BoardWithMotors]) -> Table {
     let mut table = Table::listed(["board", "description", "motors that fit"], []);

@@ -5,7 +5,7 @@
 
 mod text;
 
-use crate::cli::{DriveArguments, Failure, print_json, print_text, tell_warnings};
+use crate::cli::{DriveArguments, Failure, note, print_json, print_text, tell_warnings};
 use clap::Args;
 use hexagen_lab::judgement::Judgement;
 
@@ -37,6 +37,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_json(&judgement)?;
     } else {
         tell_warnings(&drive);
+        // Only a core that is not the board's own needs a word.
+        if let Some(core) = drive
+            .core_of_board
+            .as_deref()
+            .filter(|core| core.contains(": "))
+        {
+            note(&format!("the board's chip: {core}"));
+        }
         let lines = text::lines(&judgement, &drive, options.reasons, &next(asked));
         print_text(&lines.join("\n"))?;
     }

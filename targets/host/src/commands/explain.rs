@@ -1,6 +1,6 @@
 //! `hexagen explain`: cause, example and remedy of a diagnostic.
 
-use crate::cli::{Failure, print_json, print_text};
+use crate::cli::{Failure, print_json, print_text, wrapped_row};
 use clap::Args;
 use hexagen_codegen::diagnostics::Code;
 use serde::Serialize;
@@ -49,7 +49,7 @@ impl Told {
         };
         let severity = if self.is_warning { "warning" } else { "error" };
         print_text(&format!(
-            "{} ({severity})\n{}\n\nMakes it:\n{}\n\nIs accepted:\n{}\n\n{}",
+            "{} ({severity})\n{}\n\nWrong:\n{}\n\nRight:\n{}\n\n{}",
             self.code,
             self.cause,
             lines(self.wrong),
@@ -91,7 +91,7 @@ fn list(json: bool) -> Result<(), Failure> {
     }
     let lines: Vec<String> = all
         .iter()
-        .map(|told| format!("{}  {}", told.code, told.cause))
+        .map(|told| wrapped_row(&format!("{:<12}{}", told.code, told.cause)))
         .collect();
     print_text(&lines.join("\n"))
 }

@@ -71,11 +71,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.run.json {
         print_json(&outcome)
     } else {
-        print(&outcome, drive.bus_counts(0.0).is_some())
+        print(&outcome, &drive)
     }
 }
 
-fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
+fn print(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     let study = &outcome.study;
     let speeds = distinct(study.points.iter().map(|point| point.rpm));
     let torques = distinct(study.points.iter().map(|point| point.torque_nm.abs()));
@@ -98,7 +98,7 @@ fn print(outcome: &Outcome, measures_bus: bool) -> Result<(), Failure> {
         engineering(SHORT_RESISTANCE, "ohm"),
     )))?;
     print_text("")?;
-    print_text(&paragraph(&verdict(study, measures_bus)))
+    print_text(&paragraph(&verdict(study, drive)))
 }
 
 fn table(study: &FaultStudy) -> Table {
@@ -209,7 +209,7 @@ const HARDWARE: &str = "The drive watches ADC range, trip level, Hall codes, a m
     thermal limit.";
 
 /// The counts, and what follows for the board.
-fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
+fn verdict(study: &FaultStudy, drive: &Prepared) -> String {
     let Totals {
         classes,
         always,
@@ -237,7 +237,7 @@ fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
             significant(largest.reduce(f64::max), 3)
         ));
     }
-    if measures_bus {
+    if drive.bus_counts(0.0).is_some() {
         lines.push(
             "A bus that is no longer measured trips nothing: `status().bus_is_stale` tells it."
                 .to_owned(),
@@ -255,6 +255,12 @@ fn verdict(study: &FaultStudy, measures_bus: bool) -> String {
     if study.over_speed_rpm.is_none() {
         lines
             .push("The speed is not watched: `over_speed` in [inverter] turns that on.".to_owned());
+    }
+    if drive.regulates_speed {
+        lines.push(
+            "The drive's speed loop was left out, so that the torque is that of each run; its stall time-out was not."
+                .to_owned(),
+        );
     }
     lines.push(HARDWARE.to_owned());
     lines.join("\n")

@@ -1,11 +1,12 @@
 //! `hexagen limit`: the highest speed at which a controller holds the torque.
 
+use super::cut::cut_by;
 use super::ran::Ran;
 use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_warnings};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::{
-    LimitOptions, LimitOutcome, SpeedLimit, TOLERANCE, percent, speed_limit,
+    LimitOptions, LimitOutcome, Side, SpeedLimit, TOLERANCE, percent, speed_limit,
 };
 use hexagen_lab::engine::{Prepared, SelectedMotor};
 use hexagen_lab::envelope::{SpeedBounds, envelope_on};
@@ -109,21 +110,21 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.run.json {
         print_json(&outcome)?;
     } else {
-        print_found(&outcome, &drive)?;
+        let v_bus = options.run.plant.v_bus;
+        let v_bus = v_bus.unwrap_or(drive.spec.inverter.v_bus);
+        print_found(&outcome, &drive, v_bus)?;
     }
     Failure::of_trip(outcome.limit.tripped)
 }
 
-fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
-    let free = outcome
-        .without_window
-        .as_ref()
-        .map_or_else(String::new, |free| {
-            format!(
-                "; with in-phase sensors {}",
-                found(free, outcome.torque_nm, drive)
-            )
-        });
+fn print_found(outcome: &Outcome, drive: &Prepared, v_bus: f64) -> Result<(), Failure> {
+    let told = |limit: &SpeedLimit| found(limit, outcome.torque_nm, drive, v_bus);
+    let own = told(&outcome.limit);
+    let free = match outcome.without_window.as_ref().map(told) {
+        None => String::new(),
+        Some(free) if free == own => "; the same with in-phase sensors".to_owned(),
+        Some(free) => format!("; with in-phase sensors {free}"),
+    };
     let bounds = outcome.bounds.map_or_else(String::new, |bounds| {
         if bounds.envelope_rpm > 0.0 {
             format!(
@@ -135,16 +136,18 @@ fn print_found(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
         }
     });
     print_text(&format!(
-        "{}: {} Nm {}{free}{bounds}",
+        "{}: {} Nm {own}{free}{bounds}",
         outcome.ran.name(),
         significant(outcome.torque_nm, 4),
-        found(&outcome.limit, outcome.torque_nm, drive)
     ))
 }
 
-/// A limit in words.
-fn found(limit: &SpeedLimit, torque: f64, drive: &Prepared) -> String {
-    let why = limit.why().unwrap_or_default();
+/// A limit in words, on a bus of `v_bus` volt.
+fn found(limit: &SpeedLimit, torque: f64, drive: &Prepared, v_bus: f64) -> String {
+    let is_below = limit.lost == Some(Side::Below);
+    let cut = is_below.then(|| cut_by(&drive.spec.inverter, torque > 0.0, v_bus));
+    let cut = cut.flatten().map(|cut| format!(", with {cut}"));
+    let why = limit.why().unwrap_or_default() + &cut.unwrap_or_default();
     match (limit.outcome, limit.limit_rpm, limit.limit_pct) {
         (LimitOutcome::NeverHeld, _, _) | (_, None, _) | (_, _, None) => {
             let reach = drive.reach();

@@ -8,6 +8,7 @@ pub mod boards;
 pub mod check;
 pub mod compare;
 pub mod completions;
+mod cut;
 pub mod explain;
 pub mod faults;
 pub mod generate;

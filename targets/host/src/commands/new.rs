@@ -54,22 +54,32 @@ struct Made {
 pub fn run(options: &Options) -> Result<(), Failure> {
     refuse_present(&options.file, options.force)?;
     let mut draft = Draft::of(given(&options.values)?, &options.file)?;
-    if !options.json && std::io::stdin().is_terminal() {
+    let asks = !options.json && std::io::stdin().is_terminal();
+    if asks {
         // Before questions are asked in vain.
-        checked(&draft.text(), &options.file, false)?;
+        checked(&draft.text(), &options.file, false).map_err(refused)?;
         draft.ask(&mut std::io::stdin().lock().lines(), &options.file)?;
     }
     let missing = draft.missing();
-    if !options.json && !missing.is_empty() && !std::io::stdin().is_terminal() {
-        note("nothing is asked without a terminal; give values as FIELD=VALUE arguments");
-    }
     let text = draft.text();
-    checked(&text, &options.file, missing.is_empty())?;
+    let wrong = checked(&text, &options.file, missing.is_empty());
+    // Answers are not lost: what is wrong between them is corrected in the file.
+    let wrong = match wrong {
+        Err(wrong) if !asks => return Err(refused(wrong)),
+        wrong => wrong.err(),
+    };
     write_new(&options.file, text.as_bytes(), options.force).map_err(|error| Failure::Write {
         path: options.file.clone(),
         reason: error.to_string(),
     })?;
     let file = options.file.display();
+    if let Some(wrong) = wrong {
+        note(&format!("{file} is written; correct it there:"));
+        return Err(LabError::Specification(wrong).into());
+    }
+    if !options.json && !asks && !missing.is_empty() {
+        note("nothing is asked without a terminal; give values as FIELD=VALUE arguments");
+    }
     if options.json {
         return print_json(&Made {
             file: options.file.clone(),
@@ -218,7 +228,7 @@ impl Draft {
             }
         }
         let mut asked: Vec<&str> = Vec::new();
-        while let Some(line) = self.next_question(&asked) {
+        while let Some(line) = self.next_question(&asked, file) {
             note(&format!(
                 "{}\n  {} ",
                 line.about.replace("\n# ", " "),
@@ -231,6 +241,13 @@ impl Draft {
                 Some((name, value)) => (name.trim(), value.trim()),
                 None => (line.fields[0], answer.as_str()),
             };
+            if !line.fields.contains(&name) {
+                note(&format!(
+                    "`{name}` is not asked for here; answer {}, and write that into the file later.",
+                    names(line)
+                ));
+                continue;
+            }
             if value.is_empty() || self.takes(name, value, file) {
                 asked.push(line.fields[0]);
             }
@@ -239,10 +256,15 @@ impl Draft {
     }
 
     /// The first line that is needed and neither given nor asked for. An answer may call for further
-    /// ones.
-    fn next_question(&self, asked: &[&str]) -> Option<&'static Line> {
+    /// ones: the `winding` of a value per phase.
+    fn next_question(&self, asked: &[&str], file: &Path) -> Option<&'static Line> {
+        let missing = errors(&self.text(), file).into_iter();
+        let missing = missing.filter(|error| error.code == Code::MissingField);
+        let missing: Vec<String> = missing.map(|error| error.message).collect();
         self.all_lines().find(|line| {
-            let is_open = line.is_needed && line.default.is_none();
+            let lacks = format!("lacks the field `{}`", line.fields[0]);
+            let is_missing = missing.iter().any(|message| message.contains(&lacks));
+            let is_open = (line.is_needed || is_missing) && line.default.is_none();
             is_open && self.values_of(line).next().is_none() && !asked.contains(&line.fields[0])
         })
     }
@@ -280,15 +302,13 @@ impl Draft {
         if let Some((board, _)) = &self.board {
             let _ = write!(
                 text,
-                "\n# It states every field that [inverter] lacks; `hexagen boards` lists the library.\n{}\n",
+                "\n# It states what [inverter] lacks but for bus_voltage; `hexagen boards` lists the library.\n{}\n",
                 entry(BOARD, board)
             );
         }
         for (section, lines) in SECTIONS {
             let _ = write!(text, "\n[{section}]\n");
-            if section == "inverter" {
-                text.push_str(&self.fields_of_board());
-            }
+            text.push_str(&self.fields_of_board(section));
             for line in self.lines(lines) {
                 let _ = writeln!(text, "# {}", line.about);
                 let given = self.values_of(line).map(|(name, value)| entry(name, value));
@@ -317,23 +337,35 @@ impl Draft {
         text
     }
 
-    /// What the board states, but for what stands in the file itself, as comments.
-    fn fields_of_board(&self) -> String {
+    /// What the board states of a section, but for what stands in the file itself, as comments.
+    fn fields_of_board(&self, section: &str) -> String {
         let Some((board, fields)) = &self.board else {
             return String::new();
         };
-        let is_own = |name: &String| self.values.iter().any(|(own, _)| own == name);
-        let stated = fields.iter().filter(|(name, _)| !is_own(name));
-        let entries = stated.map(|(name, value)| format!("# {}\n", entry(name, value)));
-        let entries: String = entries.collect();
-        format!("# {board} states these; a line of your own overrides it.\n{entries}\n")
+        let is_shown = |(name, _): &&(String, String)| {
+            let is_own = self.values.iter().any(|(own, _)| own == name);
+            !is_own && section_of(name) == Some(section)
+        };
+        let stated = fields.iter().filter(is_shown);
+        let entries: Vec<String> = stated.map(|(name, value)| entry(name, value)).collect();
+        if entries.is_empty() {
+            return String::new();
+        }
+        // A core and its clock are one statement.
+        let overrides = if section == "controller" {
+            "state both, or none, yourself"
+        } else {
+            "a line of your own overrides it"
+        };
+        let entries = entries.join("\n# ");
+        format!("# {board} states these; {overrides}.\n# {entries}\n\n")
     }
 }
 
 /// The next answer to a prompt; none at the end of the input.
 fn answer(answers: &mut Answers, example: &str) -> Result<Option<String>, Failure> {
     let mut prompt = std::io::stderr().lock();
-    let _ = write!(prompt, "  (as {example}): ").and_then(|()| prompt.flush());
+    let _ = write!(prompt, "  (for example {example}): ").and_then(|()| prompt.flush());
     let answer = answers.next().transpose();
     let answer =
         answer.map_err(|error| Failure::Argument(format!("cannot read the answer: {error}")))?;
@@ -384,8 +416,13 @@ fn errors(text: &str, file: &Path) -> Vec<Diagnostic> {
     read.err().into_iter().flatten().collect()
 }
 
+/// A failure by wrong values of which no file was made.
+fn refused(wrong: String) -> Failure {
+    LabError::Specification(wrong + "\nNothing was written.").into()
+}
+
 /// Whether what was given is right: what is missing, and what waits for it, is not wrong.
-fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
+fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), String> {
     let wrong: Vec<String> = errors(text, file)
         .into_iter()
         .filter(|error| {
@@ -396,7 +433,7 @@ fn checked(text: &str, file: &Path, is_complete: bool) -> Result<(), Failure> {
     if wrong.is_empty() {
         return Ok(());
     }
-    Err(LabError::Specification(format!("{}\nNothing was written.", wrong.join("\n"))).into())
+    Err(wrong.join("\n"))
 }
 
 #[cfg(test)]
@@ -413,9 +450,10 @@ mod tests {
             "0.56 ohm terminal",
             "0.92 H terminal",
             "0.92 mH terminal",
-            "torque_constant=3.6 Ncm/A block_mean",
             "square",
+            "speed_constant=285 rpm/V block_mean",
             "trapezoidal",
+            "torque_constant=3.6 Ncm/A block_mean",
             "6.9 A",
             "3500 rpm",
             "24 V",
@@ -434,6 +472,7 @@ mod tests {
         draft.ask(&mut given, file).expect("answers are read");
         assert_eq!(given.count(), 0, "an answer was not asked for");
         let text = draft.text();
+        assert!(!text.contains("\nspeed_constant"), "{text}");
         for line in [
             "resistance = \"0.56 ohm terminal\"",
             "emf_shape = \"trapezoidal\"",
@@ -446,6 +485,20 @@ mod tests {
             .map(ToString::to_string)
             .collect();
         assert!(told.is_empty(), "{told:#?}");
+    }
+
+    #[test]
+    fn a_value_per_phase_is_asked_for_its_winding() {
+        let file = Path::new("own.toml");
+        let mut draft = Draft::of(Vec::new(), file).expect("nothing is wrong");
+        let answers = ["", "8", "0.28 ohm per_phase", "0.46 mH per_phase", "delta"];
+        let mut given = answers.iter().map(|answer| Ok((*answer).to_owned()));
+        draft.ask(&mut given, file).expect("answers are read");
+        assert!(
+            draft.text().contains("winding = \"delta\""),
+            "{}",
+            draft.text()
+        );
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
+use super::cut::cut_by;
 use super::ran::Ran;
 use crate::cli::{
-    self, Failure, RunArguments, parse_rpm, print_json, print_text, spinner, warn, write_file,
+    self, Failure, PlantArguments, RunArguments, parse_rpm, print_json, print_text, spinner, warn,
+    write_file,
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
@@ -25,16 +27,33 @@ pub struct Options {
     #[command(flatten)]
     pub run: RunArguments,
     /// Mechanical speed in rpm; negative is backward
+    #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, required_unless_present = "speed_set")]
+    pub rpm: Option<f64>,
+    /// Speed set-point in rpm, with `speed_loop=on`: the run starts at --rpm or from rest, --torque is
+    /// the limit of the speed loop, the shaft has --inertia or that of the motor file, and the
+    /// measurement begins after the run-up; warns if the speed has not settled within 2 % of set-point
+    /// or start, whichever is faster. Without it a speed loop is left out
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
-    pub rpm: f64,
-    /// Speed set-point in rpm, with `speed_loop=on`: the run starts at --rpm, --torque is the limit
-    /// of the speed loop, and the measurement begins after the run-up; warns if the speed has not
-    /// settled within 2 %
-    #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, requires = "inertia")]
     pub speed_set: Option<f64>,
     /// Write the measurement of the first run, one row per period
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+}
+
+impl Options {
+    /// Speed at the start, rpm.
+    fn start_rpm(&self) -> f64 {
+        self.rpm.unwrap_or(0.0)
+    }
+
+    /// What deviates of the plant: to reach a speed the shaft is free, by default with the motor's inertia.
+    fn plant(&self, drive: &Prepared) -> PlantArguments {
+        let mut plant = self.run.plant.clone();
+        if self.speed_set.is_some() {
+            plant.inertia = plant.inertia.or(drive.spec.motor.inertia);
+        }
+        plant
+    }
 }
 
 /// A run and its figures of merit.
@@ -63,13 +82,19 @@ pub struct Outcome {
 /// Diagnostics, or a plant option out of range.
 pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement), Failure> {
     let arguments = &options.run;
-    let drive = arguments.prepare()?;
+    let drive = match options.speed_set {
+        Some(_) => arguments.prepare()?,
+        None => arguments.prepare_for_torque()?,
+    };
     let torque = arguments.torque(&drive);
-    let plant = arguments.plant.plant(&drive)?;
-    let mut run = arguments.plant.options().run(&drive, options.rpm, torque);
+    let deviations = options.plant(&drive);
+    let plant = deviations.plant(&drive)?;
+    let mut run = deviations
+        .options()
+        .run(&drive, options.start_rpm(), torque);
     run.aim = aim(options, &drive, &plant, torque)?;
     check_duration(&run, &plant, options)?;
-    let mut set_point = arguments.plant.set_point(&drive, torque);
+    let mut set_point = deviations.set_point(&drive, torque);
     set_point.rpm = options.speed_set;
     let progress = spinner("simulating");
     let measured = measure(&plant, &run, drive.maker(arguments.model(), set_point));
@@ -91,30 +116,24 @@ fn aim(
     plant: &PlantParams,
     torque: f64,
 ) -> Result<Option<Aim>, Failure> {
-    let wrong = |text: &str| Err(Failure::Argument(text.to_owned()));
-    match (
-        options.speed_set,
-        drive.spec.controller.common().speed,
-        plant.mechanics,
-    ) {
-        (None, None, _) => Ok(None),
-        (Some(_), None, _) => {
-            wrong("--speed-set: the drive has no speed loop; set `speed_loop=on` in --controller")
-        }
-        (None, Some(_), _) | (_, _, None) => wrong(
-            "`speed_loop: on`: the drive controls its speed; add --speed-set and --inertia, or set `speed_loop=off` in --controller",
-        ),
-        (Some(rpm), Some(speed), Some(mechanics)) => {
-            let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
-            if rpm.abs() > most {
-                warn(&format!(
-                    "--speed-set {rpm}: the drive limits its speed to maximum_speed = {most:.0} rpm"
-                ));
-            }
-            let speeds = (options.rpm * TAU / 60.0, rpm * TAU / 60.0);
-            Ok(Some(Aim::of(&speed, &mechanics, torque, speeds)))
-        }
+    let Some(rpm) = options.speed_set else {
+        return Ok(None);
+    };
+    let speed = drive.spec.controller.common().speed;
+    let (Some(speed), Some(mechanics)) = (speed, plant.mechanics) else {
+        return Err(Failure::Argument(
+            "--speed-set: the drive has no speed loop; set `speed_loop=on` in --controller"
+                .to_owned(),
+        ));
+    };
+    let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
+    if rpm.abs() > most {
+        warn(&format!(
+            "--speed-set {rpm}: the drive limits its speed to maximum_speed = {most:.0} rpm"
+        ));
     }
+    let speeds = (options.start_rpm() * TAU / 60.0, rpm * TAU / 60.0);
+    Ok(Some(Aim::of(&speed, &mechanics, torque, speeds)))
 }
 
 /// Most control periods of a run, with settling: minutes of computing time.
@@ -127,7 +146,7 @@ const LEAST_PERIODS_PER_TURN: f64 = 6.0;
 fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> Result<(), Failure> {
     let (name, rpm) = match options.speed_set {
         Some(set) => ("--speed-set", set),
-        None => ("--rpm", options.rpm),
+        None => ("--rpm", options.start_rpm()),
     };
     let pole_pairs = f64::from(plant.pole_pairs);
     let most = 60.0 / (LEAST_PERIODS_PER_TURN * plant.t_s * pole_pairs);
@@ -180,13 +199,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
         write_file(path, &csv)?;
     }
+    let deviations = options.plant(&drive);
     let outcome = Outcome {
         ran: Ran::of(&drive, options.run.model()),
-        rpm: options.rpm,
+        rpm: options.start_rpm(),
         torque_nm: options.run.torque(&drive),
         tripped: measured.tripped,
-        speed: options.run.plant.inertia.map(|_| {
+        speed: deviations.inertia.map(|_| {
             let least_rpm = drive.spec.inverter.minimum_speed * 60.0 / TAU;
+            let least_rpm = least_rpm.max(options.start_rpm().abs());
             Speed::of(&measured, options.speed_set, least_rpm)
         }),
         figures: measured.figures,
@@ -198,12 +219,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }) = outcome.speed
     {
         warn(&format!(
-            "--speed-set {set}: the speed has not settled within {:.0} % of it",
+            "--speed-set {set}: the speed has not settled within {:.0} % of that, or of the start's if it is faster",
             100.0 * SETTLED
         ));
     }
-    let plant = options.run.plant.plant(&drive)?;
-    if let Some(text) = beyond_envelope(&drive, &plant, options, &outcome) {
+    let plant = deviations.plant(&drive)?;
+    if let Some(text) = beyond_drive(&drive, &plant, options, &outcome) {
         warn(&text);
     }
     if options.run.json {
@@ -217,8 +238,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 /// A demand over the envelope's torque from which on it is beyond the envelope.
 const BEYOND: f64 = 1.001;
 
+/// Share of a demand below which a torque that a limit may have cut is told.
+const CUT: f64 = 0.97;
+
 /// What a speed or torque beyond the drive's means; none within, and none with a speed loop.
-fn beyond_envelope(
+fn beyond_drive(
     drive: &Prepared,
     plant: &PlantParams,
     options: &Options,
@@ -227,7 +251,7 @@ fn beyond_envelope(
     if options.speed_set.is_some() {
         return None;
     }
-    let rpm = options.rpm;
+    let rpm = options.start_rpm();
     let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
     if rpm.abs() > most * (1.0 + 1e-9) {
         return Some(format!(
@@ -240,6 +264,16 @@ fn beyond_envelope(
     let demand = outcome.torque_nm.clamp(-greatest, greatest);
     let within = envelope.torque(omega_m.abs());
     let is_motoring = demand * omega_m > 0.0;
+    let made = outcome.figures.mean_torque_nm;
+    if let Some(made) = made.filter(|made| made / demand < CUT)
+        && let Some(cut) = cut_by(&drive.spec.inverter, is_motoring, plant.v_bus)
+    {
+        return Some(format!(
+            "{} Nm at {rpm} rpm: the drive makes {} Nm, with {cut}",
+            significant(demand, 4),
+            significant(made, 4)
+        ));
+    }
     (is_motoring && demand.abs() > within * BEYOND).then(|| {
         format!(
             "{} Nm at {rpm} rpm: the bus of {} drives the whole current only up to {} Nm there, beyond which it is cut; `hexagen limit {}` prints up to which speed the torque lasts",
@@ -256,13 +290,17 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         .ran
         .engine
         .map_or(String::new(), |engine| format!(", {}", engine.name()));
+    let torque = significant(outcome.torque_nm, 4);
+    // With a set speed the torque is no demand.
+    let asked = match outcome.speed.and_then(|speed| speed.set_rpm) {
+        Some(_) => format!("from {} rpm with at most {torque} Nm", outcome.rpm),
+        None => format!("{torque} Nm at {} rpm", outcome.rpm),
+    };
     print_text(&format!(
-        "{}, {} ({}{engine}): {} Nm at {} rpm",
+        "{}, {} ({}{engine}): {asked}",
         outcome.ran.motor,
         outcome.ran.controller,
         outcome.ran.model.text(),
-        significant(outcome.torque_nm, 4),
-        outcome.rpm
     ))?;
     if let Some(trip) = outcome.tripped {
         return print_text(&format!("{trip}; it has no figures of merit"));

@@ -241,6 +241,66 @@ fn a_speed_loop_reaches_the_speed_that_is_set() {
 }
 
 #[test]
+fn a_speed_is_set_from_rest_with_the_inertia_of_the_file_and_else_a_torque() {
+    let drive = [
+        "simulate",
+        "hurst-long",
+        "--controller",
+        "pdcc:speed_loop=on",
+    ];
+    let set = ["--speed-set", "1500", "--start-angle", "0.1"];
+    let said = run(drive.iter().chain(&set));
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(
+        said.stdout.contains(": from 0 rpm with at most "),
+        "{said:?}"
+    );
+    assert!(said.stdout.contains(", settled"), "{said:?}");
+    let said = run(drive.iter().chain(&["--rpm", "400", "--torque", "-0.1"]));
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(
+        said.stderr.contains("the speed loop is left out"),
+        "{said:?}"
+    );
+    // 2 % of a standstill could not be met.
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("wheel.toml");
+    let motor = MotorSource::of_library("hoverboard-hub").expect("is in the library");
+    let heavy = "[motor]\ninertia = \"0.01 kg m2\"\n";
+    std::fs::write(&file, motor.text.replace("[motor]\n", heavy)).expect("is written");
+    let file = file.to_str().expect("a path");
+    let stop = [
+        "--rpm",
+        "200",
+        "--speed-set",
+        "0",
+        "--start-angle",
+        "0.1",
+        "--json",
+    ];
+    let drive = ["simulate", file, "--controller", "pdcc:speed_loop=on"];
+    let result = run(drive.iter().chain(&stop)).json();
+    assert_eq!(result["settled"], true, "{result}");
+}
+
+#[test]
+fn a_limit_of_the_bus_current_is_named_where_it_cuts_the_torque() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("limited.toml");
+    let motor = MotorSource::of_library("hoverboard-hub").expect("is in the library");
+    let limits = "[inverter]\nreturn_current_limit = \"1 A\"\n";
+    std::fs::write(&file, motor.text.replace("[inverter]\n", limits)).expect("is written");
+    let file = file.to_str().expect("a path");
+    let cut = ", with `return_current_limit` of 1 A";
+    let said = run(["simulate", file, "--rpm", "400", "--torque", "-5.9"]);
+    assert!(said.stderr.contains(cut), "{said:?}");
+    let said = run(["limit", file, "--torque", "-5.9"]);
+    assert!(said.stdout.contains(cut), "{said:?}");
+    let said = run(["limit", file, "--torque", "5.9"]);
+    assert!(!said.stdout.contains(cut), "{said:?}");
+}
+
+#[test]
 fn a_set_point_beyond_the_limit_is_told() {
     let at = |torque: &str| {
         run([
@@ -649,5 +709,5 @@ fn the_bus_gives_the_power_of_shaft_and_windings() {
         );
     }
     let check = run(["check", PAPER]).stdout;
-    assert!(check.contains("; bus mean 16.44 A; "), "{check}");
+    assert!(check.contains("; bus mean 16.44 A;"), "{check}");
 }

@@ -16,8 +16,9 @@ pub struct Speed {
     /// Speed at the end of the measured window, rpm; mean over all start angles.
     pub final_rpm: Option<f64>,
     /// Whether the speed loop has settled: the mean speed of each of the last three sixths of the
-    /// measured window is within 2 % of the set-point, at every start angle. (Below the lowest
-    /// measurable speed: within 2 % of that speed.) `None` without a speed loop.
+    /// measured window is within 2 % of the set-point, at every start angle. (Of a slower set-point than
+    /// the start or the lowest measurable speed: within 2 % of the faster of these.) `None` without a
+    /// speed loop.
     pub settled: Option<bool>,
 }
 
@@ -25,8 +26,8 @@ pub struct Speed {
 pub const SETTLED: f64 = 0.02;
 
 impl Speed {
-    /// The speed of a run. `set_rpm` is the speed loop's set-point, `least_rpm` the lowest
-    /// measurable speed.
+    /// The speed of a run. `set_rpm` is the speed loop's set-point, `least_rpm` the speed
+    /// to which the tolerance refers where the set-point is slower.
     pub fn of(measured: &Measurement, set_rpm: Option<f64>, least_rpm: f64) -> Self {
         let traces = match measured.tripped {
             None => &measured.traces[..],

@@ -13,7 +13,7 @@ use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
 use hexagen_codegen::pipeline::{Generated, generate, warnings};
 use hexagen_codegen::spec::{
-    BusSource, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
+    BusSource, OF_CORE, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
 };
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 use std::path::Path;
@@ -33,6 +33,8 @@ pub struct Prepared {
     pub regulates_speed: bool,
     /// The generated program.
     pub generated: Generated,
+    /// What the board's file says of the core that it states, where the controller names none itself.
+    pub core_of_board: Option<String>,
     /// The generator's warnings.
     pub warnings: Vec<String>,
     /// The specification as read by the reference.
@@ -97,6 +99,7 @@ pub fn prepare_ast(
             .then(|| spec.inverter.lowest_driving_bus())
             .filter(|least| *least < spec.inverter.v_bus),
         regulates_speed: false,
+        core_of_board: core_of_board(&ast),
         spec,
         generated,
         warnings: warnings.iter().map(ToString::to_string).collect(),
@@ -106,6 +109,15 @@ pub fn prepare_ast(
         bit_true,
         ideal,
     })
+}
+
+fn core_of_board(ast: &SpecAst) -> Option<String> {
+    let names_core = OF_CORE
+        .iter()
+        .any(|option| ast.controller.field(option).is_some());
+    let file = ast.board.as_ref()?.file.as_ref()?;
+    let (_, told) = file.source.iter().find(|(name, _)| name == "target")?;
+    (!names_core).then(|| told.clone())
 }
 
 fn models(

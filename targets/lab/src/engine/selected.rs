@@ -8,7 +8,8 @@ use crate::plant::{Mechanics, PlantError, PlantParams};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::diagnostics::catalogue::unreadable_board_file;
 use hexagen_codegen::spec::{
-    Board, EmfShape, SpecAst, apply_variant, motor_text, parse_board, parse_toml,
+    Board, EmfShape, InverterSpec, SpecAst, apply_variant, motor_text, parse_board, parse_toml,
+    reason_of,
 };
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -142,11 +143,8 @@ impl SelectedMotor {
             let is_kept = |name: &str| !OF_WINDOW.contains(&name);
             section.fields.retain(|field| is_kept(&field.name));
         }
-        let lines = "[inverter]\ncurrent_sensing = \"in_phase\"\nminimum_low_time = \"0 s\"\n";
-        let mut over = parse_toml(lines, "sensors in the phases")?;
-        over.name = free.ast.name.clone();
-        over.inverter.location = None;
-        free.ast.overlay(over);
+        let lines = "current_sensing = \"in_phase\"\nminimum_low_time = \"0 s\"";
+        state_of_inverter(&mut free.ast, lines, "sensors in the phases")?;
         Ok(free)
     }
 
@@ -177,7 +175,7 @@ impl SelectedMotor {
     }
 
     /// Like [`Self::prepare`], for commands with a torque set-point: of a drive with a speed loop its current loop,
-    /// with the whole drive's warnings and the time of its step.
+    /// with the whole drive's stall time-out and warnings and the time of its step.
     ///
     /// # Errors
     /// All diagnostics.
@@ -193,6 +191,13 @@ impl SelectedMotor {
         }
         let is_kept = |name: &str| !OF_SPEED.contains(&name);
         inner.controller.fields.retain(|field| is_kept(&field.name));
+        // By default a stall is watched for with a speed loop only.
+        let InverterSpec {
+            stall_periods, t_s, ..
+        } = drive.spec.inverter;
+        let stall = f64::from(stall_periods) * t_s;
+        let line = format!("stall_timeout = \"{stall} s\"");
+        state_of_inverter(&mut inner, &line, "stall time-out of the speed loop")?;
         let mut current_loop = prepare_ast(inner, &self.source.name, None)?;
         current_loop.generated.interface.times = drive.generated.interface.times;
         current_loop.warnings = drive.warnings;
@@ -201,12 +206,21 @@ impl SelectedMotor {
     }
 }
 
+/// States fields of the inverter over those of a specification; `why` names them in messages.
+fn state_of_inverter(ast: &mut SpecAst, lines: &str, why: &str) -> Result<(), LabError> {
+    let mut over = parse_toml(&format!("[inverter]\n{lines}\n"), why)?;
+    over.name = ast.name.clone();
+    over.inverter.location = None;
+    ast.overlay(over);
+    Ok(())
+}
+
 /// The board of a name of the library, or else of a path.
 fn board_of(given: &str) -> Result<Board, LabError> {
     let mut board = Board::named(given.into())?;
     if board.file.is_none() {
         let bytes = std::fs::read(given).map_err(|error| {
-            let reason = error.kind().to_string();
+            let reason = reason_of(&error);
             Diagnostics::from(unreadable_board_file(&board.name.location, given, &reason))
         })?;
         board.file = Some(parse_board(&motor_text(bytes, given)?, given)?);

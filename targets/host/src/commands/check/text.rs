@@ -12,7 +12,7 @@ use std::iter::repeat;
 /// Torque of `max_current` over the demanded one above which it is told.
 const MORE: f64 = 1.01;
 
-/// About ten lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: each
+/// About ten lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: also each
 /// option chosen by default on a line of its own, with its reason.
 pub(super) fn lines(
     judgement: &Judgement,
@@ -31,8 +31,10 @@ pub(super) fn lines(
     rows.push(("current", of_current(judgement, motor, inverter)));
     rows.push(("step", sentence(&drive.generated.interface.times)));
     rows.push(("torque", of_torque(judgement)));
-    let heading = ["by default"].into_iter().chain(repeat(""));
-    rows.extend(heading.zip(of_defaults(judgement, with_reasons)));
+    if with_reasons {
+        let heading = ["by default"].into_iter().chain(repeat(""));
+        rows.extend(heading.zip(of_defaults(judgement)));
+    }
     rows.push(("next", next.to_owned()));
     let rows = rows
         .iter()
@@ -44,23 +46,14 @@ pub(super) fn lines(
         .collect()
 }
 
-/// The options that rules chose.
-fn of_defaults(judgement: &Judgement, with_reasons: bool) -> Vec<String> {
+/// The options that rules chose, with their reasons.
+fn of_defaults(judgement: &Judgement) -> Vec<String> {
     let chosen = judgement.chosen.iter();
-    let choices = chosen
-        .clone()
-        .map(|choice| format!("{} {}", choice.option, choice.value));
-    if with_reasons {
-        let reasons = chosen.map(|choice| choice.reason);
-        let lines = choices.zip(reasons);
-        return lines
-            .map(|(choice, reason)| format!("{choice}: {reason}"))
-            .collect();
-    }
-    let choices: Vec<String> = choices.collect();
-    // A file may state every option.
-    let line = (!choices.is_empty()).then(|| format!("{} (--reasons)", choices.join(", ")));
-    line.into_iter().collect()
+    let lines = chosen.map(|choice| {
+        let (option, value, reason) = (choice.option, &choice.value, choice.reason);
+        format!("{option} {value}: {reason}")
+    });
+    lines.collect()
 }
 
 fn of_motor(motor: &MotorSpec) -> String {
@@ -70,7 +63,7 @@ fn of_motor(motor: &MotorSpec) -> String {
             format!("{} kg m2", significant(inertia, 3))
         });
     format!(
-        "{} pole pair{}, {}, {} per phase; {}, {inertia}",
+        "{} pole pair{}, {}, {} per phase of a star; {}, {inertia}",
         motor.pole_pairs,
         if motor.pole_pairs == 1 { "" } else { "s" },
         engineering(motor.resistance, "ohm"),
@@ -81,7 +74,7 @@ fn of_motor(motor: &MotorSpec) -> String {
 
 fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     let edges = match drive.spec.inverter.rotor_sensing {
-        RotorSensing::SampledHalls => "Hall edges to a period (a timer is finer)",
+        RotorSensing::SampledHalls => "Hall edges sampled once a period",
         RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer",
         RotorSensing::Angle(_) => "an angle sensor",
     };
@@ -91,10 +84,13 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         .filter_map(|point| Some(significant(1e-3 * point.switching_hz?, 3)));
     let mut rates: Vec<String> = rates.collect();
     rates.dedup();
+    let rates = match rates.as_slice() {
+        [slow, rated] => format!("{slow} kHz, at rated speed {rated} kHz"),
+        rates => format!("{} kHz", rates.join(", ")),
+    };
     format!(
-        "{}, {edges}; switches at {} kHz",
-        drive.spec.controller.kind(),
-        rates.join(", ")
+        "{}, {edges}; switches at {rates}",
+        drive.spec.controller.kind()
     )
 }
 
@@ -108,7 +104,7 @@ fn of_sensing(judgement: &Judgement, inverter: &InverterSpec) -> String {
         time => format!("dead time {}", engineering(time, "s")),
     };
     format!(
-        "{place}, {} bits to {}, {} a count, {} at rating; {dead_time}",
+        "{place}, {} bits to {}, {} a count ({} at rating); {dead_time}",
         inverter.adc_bits,
         engineering(inverter.shown_current(), "A"),
         engineering(inverter.adc_gain.abs(), "A"),
@@ -118,16 +114,16 @@ fn of_sensing(judgement: &Judgement, inverter: &InverterSpec) -> String {
 
 fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
     let (share, v_bus) = (drive.spec.reach_share(), drive.spec.inverter.v_bus);
+    let bus = engineering(v_bus, "V");
     // Where legs must be low for a while.
     let reach = if share < 1.0 {
-        format!("{} of ", engineering(v_bus * share, "V"))
+        format!("{} (bus {bus})", engineering(v_bus * share, "V"))
     } else {
-        String::new()
+        bus
     };
     format!(
-        "rated speed takes {}, the inverter makes {reach}{}; whole current to {} rpm",
+        "rated speed takes {}, L included, of {reach}; whole current to {} rpm",
         engineering(judgement.rating_v, "V"),
-        engineering(v_bus, "V"),
         judgement.envelope_rpm.floor(),
     )
 }
@@ -164,15 +160,21 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     } else {
         String::new()
     };
+    let rated = engineering(motor.rated_current, "A");
+    // A current that is no block gives the torque of the rated one with another peak.
+    let rated = if judgement.peak_a > MORE * motor.rated_current {
+        format!("by shape above rated {rated}")
+    } else {
+        format!("rated {rated} peak")
+    };
     let drawn = judgement.rated().and_then(|point| point.bus_current_a);
     let drawn = drawn.map_or(String::new(), |mean| {
         format!("; bus mean {}", engineering(mean, "A"))
     });
     format!(
-        "{} takes a peak of {}, rated {} peak{drawn}{beyond}; trips at {}",
+        "{} takes a peak of {}, {rated}{drawn}{beyond}; trips at {}",
         engineering(judgement.torque_nm, "Nm"),
         engineering(judgement.peak_a, "A"),
-        engineering(motor.rated_current, "A"),
         engineering(inverter.trip_current, "A"),
     )
 }
@@ -195,11 +197,12 @@ fn of_torque(judgement: &Judgement) -> String {
 fn of_run(at: &str, point: &Point) -> String {
     match (point.torque_pct, point.tripped) {
         (_, Some(_)) => format!("{at} trips"),
-        (Some(torque), None) => format!(
-            "{at} {} %, ripple {} %",
-            significant(torque, 3),
-            significant(point.ripple_pp_pct, 2)
-        ),
+        (Some(torque), None) => {
+            let ripple = point.ripple_pp_pct.map_or_else(String::new, |ripple| {
+                format!(", ripple {} %", significant(ripple, 2))
+            });
+            format!("{at} {} %{ripple}", significant(torque, 3))
+        }
         (None, None) => format!("{at} none"),
     }
 }

@@ -73,13 +73,6 @@ const MOTOR: &[Line] = &[
         "star",
     )
     .optional(),
-    needed(
-        &["back_emf", "speed_constant", "torque_constant"],
-        "The EMF: back_emf with line_to_line or phase, and peak or rms; or speed_constant (rpm/V;\n\
-         # with block_mean for the KV of an outrunner, rms for a meter's reading);\n\
-         # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
-        "17.3 V/krpm line_to_line peak",
-    ),
     needed(&["emf_shape"], "sinusoidal (most hub, servo and outrunner motors) or trapezoidal; or harmonics, or samples of a trace between\n# two terminals.", "sinusoidal"),
     needed(
         &["emf_orders"],
@@ -99,6 +92,13 @@ const MOTOR: &[Line] = &[
         "[0.0, 1.3, 2.4]",
     )
     .only_with("emf_shape", "samples"),
+    needed(
+        &["back_emf", "speed_constant", "torque_constant"],
+        "The EMF: back_emf with line_to_line or phase, and peak or rms; or speed_constant (rpm/V;\n\
+         # with block_mean for the KV of an outrunner, rms for a meter's reading);\n\
+         # or torque_constant with per_peak_ampere, per_rms_ampere or block_mean (Maxon).",
+        "17.3 V/krpm line_to_line peak",
+    ),
     needed(
         &["rated_current"],
         "Continuous current of a phase: its peak, or rms.",
