@@ -125,13 +125,13 @@ fn written(field: &Field) -> Option<Ident> {
 
 #[cfg(test)]
 mod tests {
-    use super::{KINDS, expand_fields};
+    use super::{KINDS, Kind, expand_fields};
 
     /// A field of a call that has no constant would not compile.
     #[test]
     fn every_option_has_its_constant() {
         let items = expand_fields().to_string();
-        for rule in KINDS.iter().flat_map(|kind| kind.rules()) {
+        for rule in KINDS.iter().flat_map(Kind::rules) {
             let constant = format!("pub const {} :", rule.name);
             assert!(items.contains(&constant), "{}", rule.name);
         }

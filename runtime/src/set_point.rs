@@ -248,8 +248,20 @@ pub(crate) fn debug<C: Control>(
 
 #[cfg(test)]
 mod tests {
-    use super::thousandths;
+    use super::{TORQUE_RATIO_BITS, Word, scaled_torque, thousandths};
     use fixed::types::I16F16;
+
+    #[test]
+    fn a_learnt_ratio_scales_a_torque_and_saturates() {
+        let scaled = |bits: i32, ratio: f64| {
+            let ratio = Word((ratio * f64::from(1 << TORQUE_RATIO_BITS)).round() as i32);
+            scaled_torque(Word(bits), ratio).0
+        };
+        assert_eq!(scaled(65_536, 1.0), 65_536);
+        assert_eq!(scaled(-65_536, 1.25), -81_920);
+        assert_eq!(scaled(i32::MAX, 1.5), 3 << 29);
+        assert_eq!(scaled(i32::MIN, 1.5), -(3 << 29));
+    }
 
     #[test]
     fn thousandths_round_to_the_nearest_bit_and_saturate() {

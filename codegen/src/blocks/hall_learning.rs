@@ -96,7 +96,7 @@ pub(super) struct Placed<'b> {
 impl<'b> HallLearning<'b> {
     /// Declares the words; `None` without `hall_learning`.
     pub fn new(l: &Lowering<'b>) -> Option<Self> {
-        if !l.spec.controller.common().hall_learning {
+        if !l.spec.controller.common().learning.halls {
             return None;
         }
         let shift = |name, sectors| {

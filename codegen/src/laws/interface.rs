@@ -57,7 +57,7 @@ pub fn interface(
             word: OVER_SPEED_COUNT,
             most: OVER_SPEED_EDGES,
         }),
-        torque_ratio: (spec.controller.common().torque_learning).then_some(TORQUE_RATIO),
+        torque_ratio: (spec.controller.common().learning.torque).then_some(TORQUE_RATIO),
         limits: limits(spec, scaled.scale),
         units: units(spec, scaled.scale),
     }

@@ -228,10 +228,10 @@ fn trips(spec: &Spec) -> Vec<String> {
     });
     lines.extend(over_speed(spec));
     lines.extend(field_weakening(spec));
-    if spec.controller.common().hall_learning {
+    if spec.controller.common().learning.halls {
         lines.push("While the rotor turns steadily the drive learns how the Hall sensors stand against each other, and at up to a tenth of `max_current` how all stand against the EMF: up to 15 electrical degrees, until `reset()`.".to_owned());
     }
-    if spec.controller.common().torque_learning {
+    if spec.controller.common().learning.torque {
         lines.push("While the rotor turns at a set-point near 0 the drive learns the torque constant, which `set_torque` uses: two thirds to 1.5 times the stated one, until `reset()`.".to_owned());
     }
     if inverter.hall_glitches > 0 {

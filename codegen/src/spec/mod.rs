@@ -47,8 +47,8 @@ pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
 pub use controller::{
     Candidates, CommonMode, ControllerSpec, Core, Discretisation, EmfSource, FcsMpcSpec, KINDS,
-    Kind, LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec, PhccCandidates,
-    PhccSpec, PiPwmSpec, Reference, SpeedLoop, SwitchingTable, Target,
+    Kind, Learning, LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec,
+    PhccCandidates, PhccSpec, PiPwmSpec, Reference, SpeedLoop, SwitchingTable, Target,
 };
 pub use emf_shape::{proportional_current, zero_sum_integral};
 pub use envelope::Envelope;

@@ -233,8 +233,9 @@ impl Text {
 mod tests {
     use crate::spec::{
         BusCurrents, BusSource, CommonMode, ControllerSpec, Core, CurrentSensing, CurrentSensor,
-        Discretisation, EmfShape, EmfSource, HALL_ANGLES, InverterSpec, LimitRule, LoopOptions,
-        Modulation, MotorSpec, PdccSpec, Reference, RotorSensing, SensedPhases, SensingTimes, Spec,
+        Discretisation, EmfShape, EmfSource, HALL_ANGLES, InverterSpec, Learning, LimitRule,
+        LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, RotorSensing, SensedPhases,
+        SensingTimes, Spec,
     };
 
     fn hub_drive() -> Spec {
@@ -312,8 +313,7 @@ mod tests {
                     slew_rate: None,
                     residual_periods: None,
                     field_weakening: false,
-                    hall_learning: false,
-                    torque_learning: false,
+                    learning: Learning::default(),
                 },
             }),
         }

@@ -9,6 +9,7 @@ use hexagen_lab::plant::{Plant, PlantParams};
 use hexagen_reference::verify::Subject;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::fmt::Write;
 
 /// Rotor speeds over the rated one.
 const SHARES: [f64; 3] = [0.25, 0.6, -0.9];
@@ -38,7 +39,7 @@ fn drives(variant: &str) -> Vec<Prepared> {
         if plain.inverter.bus == BusSource::Fixed {
             let range = 1.6 * plain.inverter.v_bus;
             fields += "v_bus = \"measured\"\nbus_adc_bits = 12\n";
-            fields += &format!("bus_adc_range = \"{range:.3} V\"\n");
+            let _ = writeln!(fields, "bus_adc_range = \"{range:.3} V\"");
         }
         let has_halls = !source.text.contains("rotor = \"angle\"");
         if has_halls && !source.text.contains("hall_timer_clock") {
@@ -116,7 +117,7 @@ fn study(variant: &str, judge: impl Fn(&Prepared, [f64; 3], [f64; 2]) + Sync) {
             let runs = PLANTS
                 .into_iter()
                 .flat_map(|plant| SHARES.map(|share| (plant, share)));
-            let of = |([r, l, k_b], share)| {
+            let of = |([r, l, k_b], share): ([f64; 3], f64)| {
                 let plant = plant_of(&drive.spec).scaled(r, l, k_b);
                 let found = figures(drive, &plant, [share, k_b]);
                 let [constant, torque] = found;

@@ -189,7 +189,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             weakening: (options.field_weakening).then(|| FieldWeakening::new(l, set_point)),
             residual: (options.residual_periods)
                 .map(|periods| ResidualWatch::new(l, periods, set_point)),
-            torque: (options.torque_learning).then(|| TorqueLearning::new(l, set_point)),
+            torque: (options.learning.torque).then(|| TorqueLearning::new(l, set_point)),
         }
     }
 

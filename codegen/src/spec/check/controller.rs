@@ -73,7 +73,7 @@ pub(super) fn read(
     };
     let controller = (kind.read)(&reader, &surroundings, errors);
     if let Some(spec) = &controller
-        && spec.common().torque_learning
+        && spec.common().learning.torque
     {
         check_torque_learning(&reader, inverter, spec.common().field_weakening, errors);
     }
@@ -88,7 +88,7 @@ pub(super) fn read(
     let sensing = match motor.rotor {
         Some(RotorSource::Halls) => {
             let capture = read_capture(&reader, inverter, errors);
-            if (controller.as_ref()).is_some_and(|spec| spec.common().hall_learning) {
+            if (controller.as_ref()).is_some_and(|spec| spec.common().learning.halls) {
                 check_learning(&reader, capture, errors);
             }
             capture

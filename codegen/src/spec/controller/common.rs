@@ -113,10 +113,17 @@ pub struct LoopOptions {
     pub residual_periods: Option<u32>,
     /// Whether the reference turns against the field where the voltage ends.
     pub field_weakening: bool,
-    /// Whether the places of the Hall sensors are learnt.
-    pub hall_learning: bool,
-    /// Whether the torque constant is learnt.
-    pub torque_learning: bool,
+    /// What is learnt by the observer.
+    pub learning: Learning,
+}
+
+/// What a drive learns by its observer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Learning {
+    /// The places of the Hall sensors.
+    pub halls: bool,
+    /// The torque constant.
+    pub torque: bool,
 }
 
 /// Every group of options that several controllers take, and what it is for.
@@ -253,13 +260,13 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
         rule::choice::<bool>(HALL_LEARNING, "on")
             .preset("off")
             .about("Places of the Hall sensors, learnt while the rotor turns steadily: how the three stand against each other, and at up to a tenth of `max_current` how all stand against the EMF, up to 15 electrical degrees, until `reset()`; only with `emf: observer` and `hall_capture: timer`"),
-        |options| if_on(options.hall_learning),
+        |options| if_on(options.learning.halls),
     ),
     Row::of(
         rule::choice::<bool>(TORQUE_LEARNING, "on")
             .preset("off")
             .about("Torque constant, learnt while the rotor turns at a set-point near 0, from two thirds to 1.5 times the stated one, until `reset()`; `set_torque` uses it. Only with `emf: observer` and a measured bus"),
-        |options| if_on(options.torque_learning),
+        |options| if_on(options.learning.torque),
     ),
 ];
 
@@ -462,20 +469,21 @@ pub(crate) fn read_common(
     let slew_rate = read_slew_rate(reader, surroundings, speed, errors);
     let emf_in_use = traits.uses_emf.then_some(emf);
     let residual_periods = read_residual_timeout(reader, surroundings, emf_in_use, errors);
-    let hall_learning = read_learning(
+    let halls = read_learning(
         reader,
         HALL_LEARNING,
         emf_in_use,
         "only `emf: observer` tells how all sensors stand against the EMF",
         errors,
     );
-    let torque_learning = read_learning(
+    let torque = read_learning(
         reader,
         TORQUE_LEARNING,
         emf_in_use,
         "only `emf: observer` tells how far the EMF is from the stated one",
         errors,
     );
+    let learning = Learning { halls, torque };
     let field_weakening =
         traits.pulses_three_legs && read_field_weakening(reader, reference, errors);
 
@@ -508,8 +516,7 @@ pub(crate) fn read_common(
         slew_rate,
         residual_periods,
         field_weakening,
-        hall_learning,
-        torque_learning,
+        learning,
     })
 }
 

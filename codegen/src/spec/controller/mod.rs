@@ -13,7 +13,7 @@ pub(crate) mod phcc;
 pub(crate) mod pi_pwm;
 
 pub use common::{
-    CommonMode, Discretisation, EmfSource, LimitRule, LoopOptions, Reference, SpeedLoop,
+    CommonMode, Discretisation, EmfSource, Learning, LimitRule, LoopOptions, Reference, SpeedLoop,
 };
 pub use core::{Core, Target};
 pub use fcs_mpc::{Candidates, FcsMpcSpec};
