@@ -32,7 +32,7 @@ pub fn flow(listing: &Listing, at: u32, line: &Line) -> Result<Flow, String> {
     })
 }
 
-/// The target of `jalr 10(ra) # 800012ac <symbol>` behind `auipc ra`.
+/// The target of `jalr 10(ra) # 800012ac <symbol>`, or `jalr ra # ...` where the offset is 0, behind `auipc ra`.
 fn far_target(listing: &Listing, at: u32, line: &Line) -> Result<u32, String> {
     let unknown = || {
         format!(
@@ -43,9 +43,9 @@ fn far_target(listing: &Listing, at: u32, line: &Line) -> Result<u32, String> {
     let (operand, comment) = line.operands.split_once(" # ").ok_or_else(unknown)?;
     let register = operand
         .split_once('(')
-        .map(|(_, of)| of.trim_end_matches(')'));
+        .map_or(operand, |(_, of)| of.trim_end_matches(')'));
     let (_, upper) = listing.before(at).ok_or_else(unknown)?;
-    if upper.mnemonic == "auipc" && upper.operands().next() == register {
+    if upper.mnemonic == "auipc" && upper.operands().next() == Some(register) {
         return address(comment).ok_or_else(unknown);
     }
     Err(unknown())

@@ -226,6 +226,19 @@ c:\tret
 }
 
 #[test]
+fn the_far_call_of_risc_v_without_an_offset_is_followed() {
+    let functions = [("f", 0..12), ("g", 0x1000..0x1008)];
+    let text = "\
+0:\tauipc\tra,0x1
+4:\tjalr\tra # 1000 <g>
+8:\tret
+1000:\tnop
+1004:\tret
+";
+    assert_eq!(longest(Isa::RiscV, &functions, text), Ok(2 + 2 + 1));
+}
+
+#[test]
 fn a_step_in_control_does_not_rest() {
     let functions = [("f", 0..12), ("step_at_rest", 12..16)];
     let text = "\
