@@ -329,7 +329,7 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
             of.code,
             &of.culprit.location,
             format!(
-                "{told} ({}, at most 15 % are allowed); {advice}",
+                "{told} ({}, a factor of at most 1.15 is allowed); {advice}",
                 deviation(ratio),
             ),
         ),
@@ -352,7 +352,7 @@ fn deviation(ratio: f64) -> String {
 
 /// EMF and torque constant are one number: `peak` as it was taken, and what it is if it is a mean,
 /// V s/rad.
-pub fn mean_for_peak(stated: &Part, torque: &Part, peak: f64, true_peak: f64) -> Diagnostic {
+pub fn mean_for_peak([stated, other]: [&Part; 2], peak: f64, true_peak: f64) -> Diagnostic {
     with_parts(
         Diagnostic::new(
             Code::MeanForPeak,
@@ -361,12 +361,12 @@ pub fn mean_for_peak(stated: &Part, torque: &Part, peak: f64, true_peak: f64) ->
                 "`{}`: {} and {} are one number, as those of a sinusoidal motor are where both are means over block commutation; if so, say `block_mean`: the line-to-line peak is then {} in place of {}",
                 stated.field,
                 stated.given,
-                torque.quoted(),
+                other.quoted(),
                 engineering(true_peak, "V/(rad/s)"),
                 engineering(peak, "V/(rad/s)"),
             ),
         ),
-        &[torque],
+        &[other],
     )
 }
 

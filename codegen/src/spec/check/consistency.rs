@@ -299,19 +299,24 @@ fn mean_for_peak(
     shape: EmfShape,
     pole_pairs: u32,
 ) -> Option<Diagnostic> {
-    if shape != EmfShape::Sinusoidal || stated.reading != Reading::LinePeak {
+    // Whichever of the two is taken.
+    let taken_as_peak = matches!(stated.reading, Reading::LinePeak | Reading::PerPeakAmpere);
+    if shape != EmfShape::Sinusoidal || !taken_as_peak {
         return None;
     }
-    let peak = stated.constant(pole_pairs);
-    let torque = rest.iter().find(|other| {
-        let is_of_block = matches!(other.reading, Reading::PerAmpere | Reading::BlockMean);
-        is_of_block && other.given.dimension == Some(Dimension::TorqueConstant)
+    let is_torque = |of: &Emf| of.given.dimension == Some(Dimension::TorqueConstant);
+    let constant = stated.constant(pole_pairs);
+    let other = rest.iter().find(|other| {
+        let is_of_other_kind = is_torque(other) != is_torque(stated);
+        let is_rms = matches!(other.reading, Reading::LineRms | Reading::PerRmsAmpere);
+        let is_equal = (other.constant(pole_pairs) / constant - 1.0).abs() <= EQUAL;
+        is_of_other_kind && !is_rms && is_equal
     })?;
-    let is_equal = (torque.constant(pole_pairs) / peak - 1.0).abs() <= EQUAL;
-    is_equal.then(|| {
-        let true_peak = peak * Reading::LinePeak.factor(shape) / Reading::BlockMean.factor(shape);
-        catalogue::mean_for_peak(&stated.given.part, &torque.given.part, peak, true_peak)
-    })
+    let of_phase = Reading::LinePeak.factor(shape);
+    let taken = stated.phase_constant(shape, pole_pairs) * of_phase;
+    let true_peak = constant * of_phase / Reading::BlockMean.factor(shape);
+    let parts = [&stated.given.part, &other.given.part];
+    Some(catalogue::mean_for_peak(parts, taken, true_peak))
 }
 
 #[cfg(test)]

@@ -147,7 +147,10 @@ pub(super) fn read<'a>(
         .find(|(name, _)| reader.field(name).is_some())
         .is_some_and(|(_, stated)| stated.is_some());
     if is_readable {
-        all.into_iter().flatten().collect()
+        let mut all: Vec<Emf> = all.into_iter().flatten().collect();
+        // A stated basis is more than a usual one.
+        all.sort_by_key(|stated| stated.given.basis.is_empty());
+        all
     } else {
         Vec::new()
     }

@@ -386,14 +386,27 @@ fn a_flat_motor_as_its_catalogue_words_it() {
     let line_mean = printed * 5600.0 * PI / 30.0;
     assert!((line_mean / 24.0 - 1.0).abs() < 0.02, "{line_mean}");
     // Taken for a peak, the words are missed.
-    let text = EC_45.replace(" block_mean", "");
-    let ast = parse_toml(&newcomer(&text, 24, 8), "ec45.toml").expect("is TOML");
-    let (spec, origins) = check(&ast).expect("passes");
-    let codes: Vec<Code> = warnings(&spec, &origins, &[])
-        .iter()
-        .map(|warning| warning.code)
-        .collect();
-    assert!(codes.contains(&Code::MeanForPeak), "{codes:?}");
+    let is_warned = |text: &str| {
+        let ast = parse_toml(&newcomer(text, 24, 8), "ec45.toml").expect("is TOML");
+        let (spec, origins) = check(&ast).expect("passes");
+        let warnings = warnings(&spec, &origins, &[]);
+        let mut codes = warnings.iter().map(|warning| warning.code);
+        (
+            codes.any(|code| code == Code::MeanForPeak),
+            spec.motor.emf_constant,
+        )
+    };
+    assert!(is_warned(&EC_45.replace(" block_mean", "")).0);
+    let of_peak = EC_45
+        .replace("mNm/A block_mean", "mNm/A per_peak_ampere")
+        .replace("rpm/V block_mean", "rpm/V");
+    let ast = parse_toml(&newcomer(&of_peak, 24, 8), "ec45.toml").expect("is TOML");
+    let told = check(&ast).expect_err("13 % apart").to_string();
+    assert!(told.contains("HX0318"), "{told}");
+    // The constant that states its basis is taken.
+    let (warned, constant) = is_warned(&EC_45.replace("rpm/V block_mean", "rpm/V"));
+    assert!(!warned);
+    near(constant, 40.4e-3 * PI / 3.0 / 3_f64.sqrt());
 }
 
 /// Teknic's Hudson M-2311P: 8 poles, peak volts between lines, ounce-inches per ampere, which agree

@@ -321,6 +321,11 @@ impl Ideal {
         &self.trace
     }
 
+    /// The state.
+    pub fn physical_state(&self) -> PhysicalState {
+        self.state
+    }
+
     /// Copies another model's state, to measure the error of one step.
     pub fn rebuild_from(&mut self, state: &PhysicalState) {
         self.state = *state;

@@ -128,3 +128,10 @@ pub struct PhysicalState {
     /// Mean bus current, ampere.
     pub bus_current: f64,
 }
+
+impl PhysicalState {
+    /// Stated over learnt torque constant; 1 where nothing is learnt.
+    pub fn torque_ratio(&self) -> f64 {
+        self.torque.ratio
+    }
+}

@@ -75,6 +75,13 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
         let legs = bit_true.step(&sample);
         let duties = ideal.step(&sample);
         stimulus.respond(legs);
+        let states = [bit_true.physical_state(), ideal.physical_state()];
+        let [of_words, exact] = states.map(|state| state.torque_ratio());
+        assert!(
+            (of_words - exact).abs() < 1e-5,
+            "{} step {step}: {of_words}, exactly {exact}",
+            variant.name
+        );
         if tie && far(bit_true.trace().e, ideal.trace().e) > 0.1 {
             worst.decided_otherwise += 1;
             continue;
