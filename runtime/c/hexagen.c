@@ -85,7 +85,9 @@ int32_t hexagen_scaled_torque(int32_t bits, int32_t ratio)
 
 int32_t hexagen_torque_constant_ratio(int32_t ratio)
 {
-    return INT32_C(2) * ((INT32_C(1) << 30) / (ratio >> 13));
+    const int32_t inverse = ratio >> 13;
+    /* 0 before the drive is initialised. */
+    return inverse > 0 ? INT32_C(2) * ((INT32_C(1) << 30) / inverse) : 0;
 }
 
 int32_t hexagen_whole(int32_t number)

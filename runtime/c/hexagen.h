@@ -437,6 +437,12 @@ static inline int32_t hexagen_angle_fraction(int32_t angle, uint32_t segments)
  */
 int32_t hexagen_scaled_torque(int32_t bits, int32_t ratio);
 
+/** A word that the control loop writes, read from another context. */
+static inline int32_t hexagen_shared(const int32_t *word)
+{
+    return *(const volatile int32_t *)word;
+}
+
 /** Learnt over stated torque constant, with 16 fraction bits, of the inverse ratio with 28. */
 int32_t hexagen_torque_constant_ratio(int32_t ratio);
 

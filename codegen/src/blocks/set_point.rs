@@ -238,7 +238,13 @@ impl SetPoint {
             None => "",
         };
         let (quantity, physical) = (self.quantity, &self.physical);
-        let doc = format!("Set-point word of the {greatest}{quantity}; saturates at +-{physical}.");
+        let learns = l.spec.controller.common().learning.torque;
+        let by = match self.setter {
+            Setter::Torque if learns => " by the stated constant",
+            _ => "",
+        };
+        let doc =
+            format!("Set-point word of the {greatest}{quantity}; saturates at +-{physical}{by}.");
         let (limit, most, meaning) = self.limit;
         l.b.setter(self.setter, &[&doc], |b| {
             let doc = "Set-point word: the clamped set-point as a voltage.";

@@ -28,6 +28,9 @@ const LITTLE: f64 = 200.0;
 /// Least EMF that tells the constant, over the nominal bus.
 const LEAST_EMF: f64 = 1.0 / 16.0;
 
+/// EMF along the shape over the bus, up to which it tells the constant: 85 % of the line-to-line peak of a sine.
+const FREE: f64 = 0.85 * 0.577_350_269_189_625_8;
+
 /// Periods of little current behind which the observed error has settled: nine tenths of it fall in 24.
 const SETTLED: i32 = 64;
 
@@ -105,25 +108,31 @@ impl<'b> TorqueLearning<'b> {
         self.ratio.set(ratio);
     }
 
-    /// Counts the periods of little current; `j`: the set-point in force.
+    /// Counts the periods in which the EMF tells the constant; `j`: the set-point in force, `error`: that of the EMF along
+    /// the shape.
     pub fn follow(
         self,
         l: &Lowering<'b>,
         rotor: &Rotor<'b>,
-        j: Expr<'b>,
+        [j, error, v_bus]: [Expr<'b>; 3],
     ) -> (Memory<'b>, Expr<'b>) {
         l.b.stage(
             "watch_torque",
-            &["Counts the periods in a row in which the EMF is large beside the drop across the resistance."],
+            &[
+                "Counts the periods in a row in which the EMF is large beside the drop across the resistance at the set-point, and",
+                "well below the bus, beyond which it drives a current whatever is asked.",
+            ],
         );
-        let drop = LITTLE * l.spec.motor.resistance;
+        let drop = LITTLE * l.spec.motor.resistance / self.gain;
         let k_drop = l.coefficient(
             "k_little",
-            drop / self.gain,
+            drop,
             32,
             "200 times the drop across the resistance per set-point.",
-            &format!("200 R/K = {}", significant(drop / self.gain)),
+            &format!("200 R/K = {}", significant(drop)),
         );
+        let doc = "EMF along the shape over the bus, up to which it tells the constant.";
+        let k_free = l.coefficient("k_free", FREE, 32, doc, "0.85/sqrt(3)");
         let least = LEAST_EMF * l.spec.inverter.v_bus;
         let doc = format!(
             "Least EMF that tells the torque constant, {}.",
@@ -131,9 +140,10 @@ impl<'b> TorqueLearning<'b> {
         );
         let least = l.number("light_least", l.volts_word(least), &doc);
         named! {
-            let emf_light = self.k_along * rotor.step_angle.abs();
-            let is_light = emf_light.is_above(k_drop * j.abs() + least);
-            let light_new = is_light.choose((self.light.read() + 1).min(SETTLED), 0);
+            let emf_now = self.k_along * rotor.step_angle;
+            let is_light = emf_now.abs().is_above(k_drop * j.abs() + least);
+            let is_free = (k_free * v_bus).is_above((emf_now + error).abs());
+            let light_new = (is_light & is_free).choose((self.light.read() + 1).min(SETTLED), 0);
         }
         (self.light, light_new)
     }

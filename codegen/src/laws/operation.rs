@@ -232,7 +232,7 @@ fn trips(spec: &Spec) -> Vec<String> {
         lines.push("While the rotor turns steadily the drive learns how the Hall sensors stand against each other, and at up to a tenth of `max_current` how all stand against the EMF: up to 15 electrical degrees, until `reset()`.".to_owned());
     }
     if spec.controller.common().learning.torque {
-        lines.push("While the rotor turns at a set-point near 0 the drive learns the torque constant, which `set_torque` uses: two thirds to 1.5 times the stated one, until `reset()`.".to_owned());
+        lines.push("While the rotor turns and hardly any current flows the drive learns the torque constant, which `set_torque` uses: two thirds to 1.5 times the stated one, until `reset()`.".to_owned());
     }
     if inverter.hall_glitches > 0 {
         lines.push(format!(

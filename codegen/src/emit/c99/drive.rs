@@ -446,7 +446,9 @@ impl Drive<'_> {
             text.extend(doc(&[
                 "The torque constant learnt so far makes the current.",
             ]));
-            let scale = format!("bits = hexagen_scaled_torque(bits, drive->state.{ratio});");
+            let scale = format!(
+                "bits = hexagen_scaled_torque(bits, hexagen_shared(&drive->state.{ratio}));"
+            );
             body = lines(&[&scale]) + &body;
         }
         let field = match set {
@@ -507,7 +509,7 @@ impl Drive<'_> {
                 self.names.prefix
             ),
             body: lines(&[&format!(
-                "return hexagen_torque_constant_ratio(drive->state.{word});"
+                "return hexagen_torque_constant_ratio(hexagen_shared(&drive->state.{word}));"
             )]),
         }
     }

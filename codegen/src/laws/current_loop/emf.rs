@@ -46,7 +46,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         words: &Words<'b>,
         currents: Phases<'b, 3>,
         sector: Expr<'b>,
-        (rotor, set_point): (Option<(&Rotor<'b>, Option<Phases<'b>>)>, Expr<'b>),
+        (rotor, set_point, v_bus): (Option<(&Rotor<'b>, Option<Phases<'b>>)>, Expr<'b>, Expr<'b>),
         third: Coefficient,
         outgoing: Option<Expr<'b>>,
     ) -> Option<Emf<'b>> {
@@ -66,7 +66,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 });
             }
             (Some((rotor, Some(shape))), EmfSource::Observer) => {
-                return self.observe_emf(words, i, rotor, shape, set_point);
+                return self.observe_emf(words, i, rotor, shape, [set_point, v_bus]);
             }
             _ => {}
         }
@@ -138,7 +138,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         i: Phases<'b>,
         rotor: &Rotor<'b>,
         shape: Phases<'b>,
-        set_point: Expr<'b>,
+        [set_point, v_bus]: [Expr<'b>; 2],
     ) -> Option<Emf<'b>> {
         let l = self.l;
         let memories = words.emf_error?;
@@ -171,7 +171,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let watch = words.residual;
         let counts = [
             watch.map(|watch| watch.watch(l, residual, [q, d], rotor, set_point)),
-            (words.torque).map(|learning| learning.follow(l, rotor, set_point)),
+            (words.torque).map(|learning| learning.follow(l, rotor, [set_point, q, v_bus])),
         ];
         let doc = "EMF over the target period: the modelled one plus its error, which turns with the rotor.";
         l.b.stage("observe_emf", &[doc]);

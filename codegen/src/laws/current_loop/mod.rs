@@ -219,7 +219,11 @@ impl<'b> CurrentLoop<'_, 'b> {
             &words,
             currents,
             sector_seen,
-            (rotor.map(|rotor| (rotor, shape.map(|shape| shape.unit))), j),
+            (
+                rotor.map(|rotor| (rotor, shape.map(|shape| shape.unit))),
+                j,
+                bus.volts,
+            ),
             third,
             outgoing,
         );

@@ -88,8 +88,15 @@ pub(super) fn read(
     let sensing = match motor.rotor {
         Some(RotorSource::Halls) => {
             let capture = read_capture(&reader, inverter, errors);
-            if (controller.as_ref()).is_some_and(|spec| spec.common().learning.halls) {
-                check_learning(&reader, capture, errors);
+            let learning = controller.as_ref().map(|spec| spec.common().learning);
+            let learning = learning.unwrap_or_default();
+            for (option, learns) in [
+                (HALL_LEARNING, learning.halls),
+                (TORQUE_LEARNING, learning.torque),
+            ] {
+                if learns && capture == Some(RotorSensing::SampledHalls) {
+                    refuse_sampled(&reader, option, errors);
+                }
             }
             capture
         }
@@ -98,21 +105,14 @@ pub(super) fn read(
     (controller, sensing)
 }
 
-/// The places of Hall sensors are learnt from the times between their edges.
-fn check_learning(reader: &Reader, capture: Option<RotorSensing>, errors: &mut Collector) {
-    if capture == Some(RotorSensing::SampledHalls) {
-        let why = "without `hall_timer_clock` in `inverter` the time between two edges is known to a control period only";
-        refuse(
-            reader,
-            HALL_LEARNING,
-            ["hall_capture", "sampled"],
-            why,
-            errors,
-        );
-    }
+/// The places of Hall sensors are learnt from the times between their edges, and the torque constant from the speed,
+/// which must not lag.
+fn refuse_sampled(reader: &Reader, option: &str, errors: &mut Collector) {
+    let why = "without `hall_timer_clock` in `inverter` the time between two edges is known to a control period only";
+    refuse(reader, option, ["hall_capture", "sampled"], why, errors);
 }
 
-/// The EMF at no torque tells the torque constant where the bus is known, and no current flows against the field.
+/// The EMF tells the torque constant where the bus is known, and no current is sent against the field.
 fn check_torque_learning(
     reader: &Reader,
     inverter: &Inverter,

@@ -265,7 +265,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<bool>(TORQUE_LEARNING, "on")
             .preset("off")
-            .about("Torque constant, learnt while the rotor turns at a set-point near 0, from two thirds to 1.5 times the stated one, until `reset()`; `set_torque` uses it. Only with `emf: observer` and a measured bus"),
+            .about("Torque constant, learnt while the rotor turns and hardly any current flows, from two thirds to 1.5 times the stated one, until `reset()`; `set_torque` uses it. Only with `emf: observer`, a measured bus, and `hall_capture: timer` or `rotor: angle`"),
         |options| if_on(options.learning.torque),
     ),
 ];

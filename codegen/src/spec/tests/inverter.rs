@@ -533,32 +533,39 @@ fn hall_sensors_are_learnt_with_timed_edges_and_the_observer() {
 fn the_torque_constant_is_learnt_with_a_measured_bus_and_the_observer_and_without_field_weakening()
 {
     let measured = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"65 V\"\n";
-    let learns = |bus: &str, options: &str| {
-        let inverter = format!("{TIMER}{bus}adc_range = \"40 A\"");
+    let clock = "hall_timer_clock = \"1 MHz\"\n";
+    let learns = |fields: [&str; 2], options: &str| {
+        let fields = fields.concat();
+        let inverter = format!("{TIMER}{fields}adc_range = \"40 A\"");
         let options = format!("kind = \"pdcc\"\n{options}torque_learning = \"on\"");
         let checked = try_check(&inverter, &options);
         checked.map(|(spec, _)| spec.controller.common().learning.torque)
     };
     let observer = "emf = \"observer\"\n";
-    assert_eq!(learns(measured, observer), Ok(true));
-    for (bus, options, part) in [
+    assert_eq!(learns([measured, clock], observer), Ok(true));
+    for (fields, options, part) in [
         (
-            "",
+            [measured, ""],
+            observer,
+            "`torque_learning`: on has no effect with `hall_capture = \"sampled\"`",
+        ),
+        (
+            ["", clock],
             observer,
             "`torque_learning`: on has no effect with `v_bus = \"fixed\"`",
         ),
         (
-            measured,
+            [measured, clock],
             "emf = \"model\"\n",
             "`torque_learning`: on has no effect with `emf = \"model\"`",
         ),
         (
-            measured,
+            [measured, clock],
             "emf = \"observer\"\nreference = \"proportional\"\nfield_weakening = \"on\"\n",
             "`torque_learning`: on has no effect with `field_weakening = \"on\"`",
         ),
     ] {
-        let told = learns(bus, options).expect_err(part);
+        let told = learns(fields, options).expect_err(part);
         assert!(told.contains(part), "{told}");
     }
 }

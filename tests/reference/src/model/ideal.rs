@@ -503,7 +503,8 @@ impl Ideal {
                     residual_count =
                         self.counted_residual(residual, emf_error, [current, step_angle]);
                     if let Some(learning) = &self.torque {
-                        light = learning.count(light, current, step_angle);
+                        let told = [current, emf_error[0], self.v_bus];
+                        light = learning.count(light, told, step_angle);
                     }
                     let e = self.corrected_emf(&e, emf_error, &shape);
                     let [next_a, next_b] = self.state.e_next;

@@ -422,6 +422,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ),
         ("k_learn", shift(2f64.powi(22) * w / scale / inverter.v_bus)),
         ("k_little", shift(200.0 * motor.resistance / gain)),
+        ("k_free", 30),
         ("ratio", 24),
         ("scale", 30),
         ("shape", shift(peak)),

@@ -39,6 +39,7 @@ pub struct TorqueLearning<W> {
     along: Coefficient<W>,
     learn: Coefficient<W>,
     little: Coefficient<W>,
+    free: Coefficient<W>,
     least: f64,
     limits: [f64; 2],
     product: Shift,
@@ -53,12 +54,13 @@ impl<W: Word> TorqueLearning<W> {
         let words = |volts: f64| volts / scale.w * scale.two_v;
         let speed = TAU / pow2(32) / spec.inverter.t_s;
         let v_bus = spec.inverter.v_bus;
-        let along = words(flux_along(spec, &EmfShape::new(&spec.motor)?));
+        let flux = flux_along(spec, &EmfShape::new(&spec.motor)?);
         let little = LITTLE * spec.motor.resistance / reference_gain(spec);
         Ok(Some(Self {
-            along: scale.coefficient("k_along", along * speed)?,
+            along: scale.coefficient("k_along", words(flux) * speed)?,
             learn: scale.coefficient("k_learn", pow2(28) / 64.0 / words(v_bus))?,
             little: scale.coefficient("k_little", little)?,
+            free: scale.coefficient("k_free", 0.85 / 3_f64.sqrt())?,
             least: round_half_up(words(v_bus / 16.0)),
             limits: [2.0 / 3.0, 1.5].map(|ratio| round_half_up(ratio * pow2(28))),
             product: Shift::new(28),
@@ -78,11 +80,13 @@ impl<W: Word> TorqueLearning<W> {
         within(old + self.learn.mul(beyond), self.limits[0], self.limits[1])
     }
 
-    /// Periods of little current in a row behind this one.
+    /// Periods in a row behind this one in which the EMF tells the constant; `error`: its error along the shape.
     #[inline]
-    pub fn count(&self, light: W, j: W, step_angle: W) -> W {
+    pub fn count(&self, light: W, [j, error, v_bus]: [W; 3], step_angle: W) -> W {
         let drop = self.little.mul(j.abs()) + self.least;
-        let is_light = self.along.mul(step_angle.abs()) > drop;
-        either(is_light, lesser(light + 1.0, SETTLED), word(0.0))
+        let emf = self.along.mul(step_angle);
+        let is_light = emf.abs() > drop;
+        let is_free = self.free.mul(v_bus) > (emf + error).abs();
+        either(is_light && is_free, lesser(light + 1.0, SETTLED), word(0.0))
     }
 }

@@ -29,6 +29,7 @@ pub struct TorqueLearning {
     along: f64,
     /// Volt per ampere of the set-point that the EMF must exceed.
     little: f64,
+    /// Nominal.
     v_bus: f64,
 }
 
@@ -58,10 +59,11 @@ impl TorqueLearning {
     }
 
     /// Periods of little current in a row behind this one.
-    pub fn count(&self, light: f64, current: f64, step_angle: f64) -> f64 {
+    pub fn count(&self, light: f64, [current, error, v_bus]: [f64; 3], step_angle: f64) -> f64 {
         let drop = self.little * current.abs() + self.v_bus / 16.0;
-        let is_light = self.along * step_angle.abs() > drop;
-        if is_light {
+        let emf = self.along * step_angle;
+        let is_light = emf.abs() > drop;
+        if is_light && (emf + error).abs() < 0.85 / 3_f64.sqrt() * v_bus {
             (light + 1.0).min(SETTLED)
         } else {
             0.0
