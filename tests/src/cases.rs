@@ -21,7 +21,8 @@ pub struct Case {
     pub set: Set,
     /// The model's set-point words: current, bus voltage, its reciprocal, speed.
     pub set_point_words: [i32; 4],
-    words: Vec<i32>,
+    /// The state.
+    pub words: Vec<i32>,
     sample: Sample,
     answers: [Answer; STEPS_PER_STATE],
 }
@@ -87,8 +88,9 @@ pub fn record(generated: &Generated, steps: u64, seed: u64) -> Result<Record, St
         let mut words = vec![0; names.len()];
         let mut sample = states.fill(&mut words);
         states.seek_edge(&mut model, &mut words, sample, (&mut set, most as i32));
-        set.tell(&mut model);
         model.set_state_words(&words);
+        // A torque is scaled by the constant that the state has learnt.
+        set.tell(&mut model);
         let mut case = Case {
             set,
             set_point_words: model.set_point_words().map(|word| word as i32),
@@ -130,8 +132,8 @@ pub fn replay<S: Subject>(record: &Record, names: &[&str], mut subject: S) -> Re
         ));
     }
     for (number, case) in record.cases.iter().enumerate() {
-        case.set.apply(&mut subject);
         subject.set_state_words(&case.words);
+        case.set.apply(&mut subject);
         let mut sample = case.sample;
         for answer in &case.answers {
             found.legs = subject.step(&sample);

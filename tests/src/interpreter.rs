@@ -1,6 +1,7 @@
 //! The IR interpreter as a subject of the bit-for-bit test.
 
 use crate::cases::{self, Case, Record};
+use hexagen::arith::{Word, scaled_torque};
 use hexagen_codegen::interface::Interface;
 use hexagen_codegen::ir::{Demand, Escape, Machine, Program, Setter};
 use hexagen_codegen::pipeline::Generated;
@@ -119,9 +120,12 @@ fn compare_setter(
 /// The setters' words, which steps show only through their effects.
 fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
     let mut machine = Machine::of_program(program);
+    let names = state_names(program);
+    let learnt = names.iter().position(|name| *name == "torque_ratio");
     for Case {
         set,
         set_point_words: [current, bus, reciprocal, speed],
+        words,
         ..
     } in cases
     {
@@ -136,7 +140,9 @@ fn compare_set_points(program: &Program, cases: &[Case]) -> Result<(), String> {
             call(Setter::Speed, bits)?;
         }
         if set.is_torque {
-            call(Setter::Torque, set.bits)?;
+            let ratio = learnt.map(|place| Word(words[place]));
+            let scaled = ratio.map(|ratio| scaled_torque(Word(set.bits), ratio).0);
+            call(Setter::Torque, scaled.unwrap_or(set.bits))?;
         } else {
             call(Setter::Current, set.bits)?;
         }
