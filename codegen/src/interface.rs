@@ -122,7 +122,7 @@ pub struct Interface {
     pub residual: Option<Watch>,
     /// Watch of the speed; with an `over_speed` only.
     pub over_speed: Option<Watch>,
-    /// State word of the learnt torque constant; with `torque_learning` only.
+    /// Name of the state word that holds the stated over the learnt torque constant; with `torque_learning` only.
     pub torque_ratio: Option<&'static str>,
     /// Limits of samples, and start-up.
     pub limits: Limits,

@@ -1,5 +1,5 @@
-//! Torque constant, learnt while the set-point asks for little torque (semantics page of predictive deadbeat,
-//! "Learning of the torque constant").
+//! The torque constant, learnt while hardly any current flows ("Learning of the torque constant" on the
+//! semantics page of predictive deadbeat).
 //!
 //! Under load the error of the modelled EMF along the shape mixes the EMF constant with resistance and dead
 //! time. With no current, and the bus measured, it is the constant's alone.
@@ -13,10 +13,10 @@ use crate::ir::{Coefficient, Expr, Interval, Memory, named};
 pub const TORQUE_RATIO: &str = "torque_ratio";
 
 /// Fraction bits of the ratio.
-pub const RATIO_BITS: u32 = 28;
+const RATIO_BITS: u32 = 28;
 
 /// A ratio of 1.
-pub const ONE: i32 = 1 << RATIO_BITS;
+const ONE: i32 = 1 << RATIO_BITS;
 
 /// Least and greatest ratio: a torque constant of 1.5 times and of two thirds of the stated one.
 const LIMITS: [f64; 2] = [2.0 / 3.0, 1.5];
@@ -34,7 +34,7 @@ const FREE: f64 = 0.85 * 0.577_350_269_189_625_8;
 /// Periods of little current behind which the observed error has settled: nine tenths of it fall in 24.
 const SETTLED: i32 = 64;
 
-/// Share of the difference by which the ratio moves in a period, for an EMF of the nominal bus.
+/// How much of its error the ratio loses in a period at an EMF as large as the nominal bus; less in proportion to a smaller EMF.
 const GAIN: f64 = 1.0 / 64.0;
 
 /// The words.

@@ -17,7 +17,7 @@ const SHARES: [f64; 3] = [0.25, 0.5, -0.7];
 /// Control periods of learning: eight time constants at a sixteenth of the bus, the least EMF.
 const LEARNING: usize = 8_000;
 
-/// Greatest error of the learnt constant, and of the torque of which the motor is asked then.
+/// Greatest error of the learnt constant, and of the torque that `set_torque` makes with it.
 const MOST: f64 = 0.01;
 
 /// R, L and k_b over the stated ones.

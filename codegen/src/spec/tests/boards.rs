@@ -268,7 +268,7 @@ fn a_board_that_there_is_not_is_told_by_name() {
     assert!(text.contains("board st-b-g431b-esc1:6:11: note"), "{text}");
 }
 
-/// A bus above the board's is no remedy, and a speed is one only below what the window leaves.
+/// No remedy raises the bus above what the board bears, nor names a speed that low-side sensing does not leave.
 #[test]
 fn remedies_keep_to_the_board() {
     const HUB: &str = "board = \"hoverboard\"\n[motor]\npoles = 30\nresistance = \"0.4 ohm terminal\"\ninductance = \"0.68 mH terminal\"\nback_emf = \"16 rpm/V line_to_line peak\"\nemf_shape = \"trapezoidal\"\nrated_current = \"10 A\"\nrated_speed = \"700 rpm\"\n[inverter]\nbus_voltage = \"36 V\"\n[controller]\nkind = \"pdcc\"\n";

@@ -5,9 +5,10 @@ use crate::model::variant::{LITTLE, SETTLED, flux_along};
 use crate::spec::Switch;
 use crate::{Error, Spec};
 
-/// The learnt ratio of stated to true torque constant.
+/// What is learnt of the torque constant.
 #[derive(Clone, Copy, Debug)]
 pub struct LearntTorque {
+    /// Stated over learnt constant.
     pub ratio: f64,
     /// Periods of little current in a row.
     pub light: f64,
