@@ -4,58 +4,39 @@ use crate::step::{Step, step};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The newest version that Rust 1.95 builds, with whose macro server it speaks. It refuses servers of
-/// compilers with a newer protocol; the session then fails on the first field, and a newer version
-/// is due.
-const VERSION: &str = "=0.0.348";
+/// The language server of the toolchain, and the source of the standard library, without which it
+/// shows no error of a macro.
+const COMPONENTS: [&str; 2] = ["rust-analyzer", "rust-src"];
 
-/// Where it is installed, in the repository.
-const FOLDER: &str = "target/tools";
-const SERVER: &str = "target/tools/bin/rust-analyzer";
-
-/// Ensures that the server finds the source of the standard library, without which it shows no error
-/// of a macro.
+/// Installs the components, unless they are there.
 ///
 /// # Errors
-/// What to install, if it is missing.
-pub fn library_source() -> Result<(), String> {
+/// What to install, where rustup cannot.
+pub fn install() -> Result<(), String> {
+    let succeeds = |command: &mut Command| command.status().is_ok_and(|status| status.success());
+    let has_server = succeeds(Command::new(COMPONENTS[0]).arg("--version"));
+    if has_server && has_library_source()? {
+        return Ok(());
+    }
+    if succeeds(Command::new("rustup").args(["component", "add"]).args(COMPONENTS)) {
+        return Ok(());
+    }
+    Err("rust-analyzer or the source of the standard library is missing, and rustup did not install them; by hand: `rustup component add rust-analyzer rust-src`, or the packages rust-analyzer and rust-src of your system".to_owned())
+}
+
+fn has_library_source() -> Result<bool, String> {
     let output = Command::new("rustc")
         .args(["--print", "sysroot"])
         .output()
         .map_err(|error| format!("cannot run rustc: {error}"))?;
     let sysroot = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
-    if sysroot.join("lib/rustlib/src/rust/library").exists() {
-        return Ok(());
-    }
-    Err("the source of the standard library is missing, which rust-analyzer reads; install it: `rustup component add rust-src`".to_owned())
+    Ok(sysroot.join("lib/rustlib/src/rust/library").exists())
 }
 
-/// Builds the language server, unless that was done before, and tests a session with it.
-pub fn steps() -> [Step; 2] {
-    let install = Step {
-        // A session of seconds needs no better: the build takes half the time.
-        environment: vec![("CARGO_PROFILE_RELEASE_OPT_LEVEL", "1")],
-        ..step(
-            "language server",
-            &[
-                "install",
-                "ra_ap_rust-analyzer",
-                "--version",
-                VERSION,
-                "--locked",
-                "--root",
-                FOLDER,
-                "--target-dir",
-                "target/tools/build",
-            ],
-        )
-    };
-    let session = Step {
-        environment: vec![("HEXAGEN_RUST_ANALYZER", SERVER)],
-        ..step(
-            "editors",
-            &["test", "--package", "hexagen-editors", "--", "--ignored"],
-        )
-    };
-    [install, session]
+/// Tests a session with the language server.
+pub fn session() -> Step {
+    step(
+        "editors",
+        &["test", "--package", "hexagen-editors", "--", "--ignored"],
+    )
 }

@@ -57,8 +57,8 @@ enum Command {
     Faults,
     /// Time that 100 controllers add to `cargo check`, and the share of each part of the generator
     CompileTime,
-    /// What rust-analyzer shows of a macro call: documentation, definitions, errors; builds it the
-    /// first time, which takes minutes
+    /// What rust-analyzer shows of a macro call: documentation, definitions, errors; installs it,
+    /// if it is missing
     Editors,
     /// Refreshes every recorded expectation (snapshots, compiler messages) except that of
     /// `commands`, which changes only with an intended change of behaviour; read the diff
@@ -83,7 +83,7 @@ fn main() -> ExitCode {
         Command::Nightly { steps } => steps::checker()
             .and_then(|()| steps::browser())
             .and_then(|()| steps::certificate_checker())
-            .and_then(|()| editors::library_source())
+            .and_then(|()| editors::install())
             .and_then(|()| checks())
             .and_then(|()| steps::run(&steps::long_checks(steps)?)),
         Command::Packages => {
@@ -97,7 +97,7 @@ fn main() -> ExitCode {
         Command::Marks => steps::run(&[steps::bench("marks", &[])]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
         Command::CompileTime => compile_time::measure(step::root()),
-        Command::Editors => editors::library_source().and_then(|()| steps::run(&editors::steps())),
+        Command::Editors => editors::install().and_then(|()| steps::run(&[editors::session()])),
         Command::Accept => steps::checker()
             .and_then(|()| steps::browser())
             .and_then(|()| steps::run(&steps::refresh())),

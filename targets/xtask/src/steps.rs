@@ -225,7 +225,6 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         "--nocapture",
     ];
     let decisions = ["test", "--package", "hexagen-tests", "--test", "decisions"];
-    let [language_server, session] = editors::steps();
     Ok(vec![
         packages::pack(true)?,
         step("verification", &verify),
@@ -269,8 +268,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
         on_target("programs", &[]),
-        language_server,
-        session,
+        editors::session(),
         step("proofs", &prove),
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),

@@ -1,12 +1,12 @@
 //! What rust-analyzer shows of a macro call: documentation as Markdown, definitions, and errors
-//! while one types. `cargo xtask editors` builds the server and runs this test.
+//! while one types. `cargo xtask editors` installs the server and runs this test.
 
 mod session;
 
 use lsp_types::{Code, Diagnostic, Location, Message};
 use session::Session;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
+use std::fs;
 
 /// A user's crate.
 const SOURCE: &str = "#![no_std]
@@ -50,7 +50,7 @@ const BEHIND_THE_CALL: &str = "use hexagen::{";
 #[test]
 #[ignore = "needs rust-analyzer: `cargo xtask editors` installs it"]
 fn an_editor_shows_documentation_definitions_and_errors() {
-    let mut session = Session::begin(&server(), &crate_of_a_user());
+    let mut session = Session::begin(&crate_of_a_user());
     documentation_is_markdown(&mut session);
     definitions_are_places(&mut session);
     errors_come_and_go_while_one_types(&mut session);
@@ -166,13 +166,6 @@ fn errors_come_and_go_while_one_types(session: &mut Session) {
 fn call(session: &Session) -> std::ops::Range<u32> {
     let begin = session.position("#![no_std]", "hexagen::controller!");
     begin.line..session.position("", BEHIND_THE_CALL).line
-}
-
-/// The language server, by the path in `HEXAGEN_RUST_ANALYZER`, relative to the repository.
-fn server() -> PathBuf {
-    let path = env::var_os("HEXAGEN_RUST_ANALYZER")
-        .expect("HEXAGEN_RUST_ANALYZER names the server: `cargo xtask editors` does so");
-    repository().join(path)
 }
 
 /// Writes a crate as a user has it, with the dependencies of this repository's versions.

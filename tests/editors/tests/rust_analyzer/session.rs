@@ -15,6 +15,9 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread::{JoinHandle, spawn};
 use std::time::Duration;
 
+/// The language server of the toolchain.
+const SERVER: &str = "rust-analyzer";
+
 /// Longest wait for a message. The server is silent while cargo builds the macros.
 const PATIENCE: Duration = Duration::from_secs(900);
 
@@ -34,14 +37,14 @@ pub struct Session {
 impl Session {
     /// Starts the server on the crate in `folder`, opens `src/lib.rs` and waits until the macros
     /// are built.
-    pub fn begin(server: &Path, folder: &Path) -> Self {
-        let mut server = Command::new(server)
+    pub fn begin(folder: &Path) -> Self {
+        let mut server = Command::new(SERVER)
             .current_dir(folder)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
-            .unwrap_or_else(|error| panic!("{}: {error}", server.display()));
+            .unwrap_or_else(|error| panic!("{SERVER}: {error}"));
         let input = server.stdin.take().expect("is piped");
         let mut output = BufReader::new(server.stdout.take().expect("is piped"));
         let mut errors = server.stderr.take().expect("is piped");
