@@ -395,7 +395,7 @@ inductance = "0.22 mH per_phase"
 winding = "star"
 back_emf = "0.1648 V/(rad/s) line_to_line peak"
 emf_shape = "trapezoidal"
-rated_current = "20 A"
+rated_current = "20 A peak"
 rated_torque = "3.3 Nm"
 rated_speed = "2000 rpm"
 [inverter]

@@ -59,7 +59,7 @@ impl RandomMotor {
             "[motor]\npole_pairs = {pole_pairs}\nresistance = \"{resistance:.6} ohm per_phase\"\n\
              inductance = \"{:.6} mH per_phase\"\nwinding = \"star\"\n\
              back_emf = \"{constant:.8} V/(rad/s) line_to_line peak\"\nemf_shape = \"{shape}\"\n\
-             rated_current = \"{current:.3} A\"\nrated_speed = \"{speed:.0} rpm\"\n\
+             rated_current = \"{current:.3} A peak\"\nrated_speed = \"{speed:.0} rpm\"\n\
              [inverter]\nbus_voltage = \"{bus} V\"\nf_pwm = \"{f_pwm} Hz\"\ntimer_clock = \"{clock} MHz\"\n\
              adc_bits = {adc_bits}\nadc_range = \"{range:.3} A\"\ncurrent_sensing = \"in_phase\"\n{hall}[controller]\nkind = \"pdcc\"\n",
             inductance * 1e3,

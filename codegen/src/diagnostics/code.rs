@@ -181,6 +181,8 @@ codes! {
     TripNearSetPoint = 615,
     /// A speed at which field weakening no longer holds the EMF within the bus.
     WeakeningEnds = 616,
+    /// Two constants that state their bases differ by more than data sheets round.
+    ConstantsApart = 617,
     /// An internal error of the generator.
     Internal = 901,
 }

@@ -526,6 +526,12 @@ impl Code {
                 "bus_voltage = \"48 V\"\nmaximum_speed = \"3200 rpm\"\nbus_clamp = \"80 V\"\nkind = \"pdcc\"\nfield_weakening = \"on\"",
                 "Lower maximum_speed to the speed in the message, or raise max_current if motor and sensors bear it.",
             ),
+            Self::ConstantsApart => say(
+                "Two fields state one EMF constant, each with its basis, and they differ by more than a data sheet rounds: a basis is probably not what the sheet means.",
+                "emf_shape = \"sinusoidal\"\nback_emf = \"0.1648 V/(rad/s) line_to_line peak\"\ntorque_constant = \"0.156 Nm/A per_peak_ampere\"",
+                "emf_shape = \"sinusoidal\"\nback_emf = \"0.1648 V/(rad/s) line_to_line peak\"\ntorque_constant = \"0.156 Nm/A block_mean\"",
+                "Look up of which current or voltage the constants are, and write the basis that the message names, if it is that one; else leave out the constant that you trust less.",
+            ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",
                 "any specification",

@@ -2,7 +2,8 @@
 
 use super::basis::Basis;
 use super::rule::{Kind, Rule};
-use super::units::Dimension;
+use super::units::{Dimension, Unit};
+use crate::diagnostics::catalogue::with_meanings;
 
 /// A name, and the rule of the field that has it.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +47,47 @@ impl FieldRule<'_> {
     /// An example of the field's value.
     pub fn example(self) -> &'static str {
         self.rule.map_or("20 A", |rule| rule.example)
+    }
+
+    /// The usual unit of the field's value; none of a plain number or a word.
+    fn unit(self) -> Option<&'static str> {
+        if self.dimensions().is_empty() {
+            return None;
+        }
+        let first = self.example().trim_start_matches('[').split(',').next()?;
+        let (_, unit) = first.split_once(' ')?;
+        // Basis words may follow.
+        let ends = unit.match_indices(' ').map(|(space, _)| space);
+        let ends = ends.chain([unit.len()]).rev();
+        let mut units = ends.map(|end| &unit[..end]);
+        units.find(|unit| Unit::parse(unit).is_some())
+    }
+
+    /// How the field is written where nothing is given yet, a clause: its unit, or an example.
+    pub fn form(self) -> String {
+        let (name, example) = (self.name, self.example());
+        self.unit().map_or_else(
+            || format!("`{name}: {example}`"),
+            |unit| format!("`{name}` in {unit}"),
+        )
+    }
+
+    /// What a number must be given with, a clause: a unit, and the bases where there is a choice that `named` does not
+    /// make. No number or basis is taken from the example: the reader might keep it.
+    pub fn unit_to_give(self, named: &[Basis]) -> String {
+        let Some(unit) = self.unit() else {
+            return "give a plain number".to_owned();
+        };
+        let references = self.references();
+        let is_named = references.iter().any(|(basis, _)| named.contains(basis));
+        if references.is_empty() || is_named {
+            return format!("give a unit such as `{unit}`");
+        }
+        let words: Vec<(&str, &str)> = references
+            .iter()
+            .map(|(basis, meaning)| (basis.word(), *meaning))
+            .collect();
+        format!("give a unit such as `{unit}`, with {}", with_meanings(&words))
     }
 
     /// Examples of the field's value, one for each possible basis, so that no basis is suggested

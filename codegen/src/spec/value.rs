@@ -119,6 +119,9 @@ fn read(field: FieldRule, text: &str, at: &Location) -> Result<Value, Diagnostic
 }
 
 fn malformed(field: FieldRule, text: &str, at: &Location) -> Diagnostic {
+    if text.starts_with('"') && matches!(at, Location::Macro(_)) {
+        return catalogue::quoted(at, field.name, text);
+    }
     catalogue::malformed_value(at, field.name, text, &field.examples(&[]))
 }
 
@@ -252,14 +255,14 @@ fn read_unit(
         return Err(catalogue::inverse_unit(at, field.name, &given, &inverse));
     }
     let nearest = Unit::nearest(&symbol, field.dimensions());
-    let examples = field.examples(&named(lexemes));
+    let right = field.unit_to_give(&named(lexemes));
     Err(catalogue::unknown_unit(
         at,
         field.name,
         &given(unknown),
         &symbol,
         nearest,
-        &examples,
+        &right,
     ))
 }
 

@@ -21,7 +21,7 @@ type Field = (&'static str, &'static str, &'static str);
 /// 24 A through the pair.
 const RESISTIVE: &[Field] = &[
     ("motor", "resistance", "1 ohm per_phase"),
-    ("motor", "rated_current", "10 A"),
+    ("motor", "rated_current", "10 A peak"),
     ("motor", "rated_torque", "1.648 Nm"),
     ("motor", "rated_speed", "1000 rpm"),
     ("inverter", "max_current", "34 A"),

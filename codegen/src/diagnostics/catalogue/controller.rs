@@ -110,21 +110,30 @@ pub fn vectors_too_coarse(
     )
 }
 
-/// An option that has no effect beside another setting; `why` is a clause.
+/// An option that has no effect beside another setting, which may be a default and stand nowhere; `why` is a clause.
 pub fn option_without_effect(
-    at: &Location,
-    option: &str,
-    given: &str,
-    other_at: &Location,
-    other: &str,
+    option: &Part,
+    [other, value]: [&str; 2],
+    other_at: Option<&Location>,
     why: &str,
 ) -> Diagnostic {
-    Diagnostic::new(
+    let Part { field, given, .. } = option;
+    let holds = if other_at.is_some() {
+        ""
+    } else {
+        ", which this drive has"
+    };
+    let error = Diagnostic::new(
         Code::OptionWithoutEffect,
-        at,
-        format!("`{option}`: {given} has no effect with `{other}`: {why}; remove one of the two"),
-    )
-    .with_note(other_at, format!("`{other}`"))
+        &option.location,
+        format!(
+            "`{field}`: {given} has no effect with `{other}: {value}`{holds}: {why}; remove `{field}` or change `{other}`"
+        ),
+    );
+    match other_at {
+        Some(at) => error.with_note(at, format!("`{other}: {value}`")),
+        None => error,
+    }
 }
 
 /// `reference: proportional` with `modulation: pair`.

@@ -3,7 +3,8 @@
 use super::internal;
 use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, Location, at_least, at_most, engineering, percent, rpm_at_most, significant,
+    Code, Diagnostic, Location, at_least, at_most, engineering, list, percent, rpm_at_most,
+    significant,
 };
 use std::fmt;
 
@@ -269,6 +270,8 @@ pub struct Contradiction<'a> {
     pub inverse: bool,
     /// All that take part.
     pub parts: &'a [&'a Part],
+    /// Those of them that agree with each other, where they are more than half.
+    pub agreed: &'a [&'a Part],
     /// Readings that fit, with what follows from them.
     pub fitting: &'a [(String, String)],
 }
@@ -329,11 +332,49 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
             of.code,
             &of.culprit.location,
             format!(
-                "{told} ({}, a factor of at most 1.15 is allowed); {advice}",
+                "{told} ({}, a factor of at most 1.15 is allowed); {}{advice}",
                 deviation(ratio),
+                agreement(of),
             ),
         ),
         &parts,
+    )
+}
+
+/// `` `a` and `b` agree, so that `c` is likely wrong; ``.
+fn agreement(of: &Contradiction) -> String {
+    let fields: Vec<&str> = of.agreed.iter().map(|part| part.field).collect();
+    if fields.len() < 2 {
+        return String::new();
+    }
+    format!(
+        "{} agree, so that `{}` is likely wrong; ",
+        list(&fields, "and"),
+        of.culprit.field
+    )
+}
+
+/// Two constants that state their bases and do not agree; `ratio`: the one that is taken over the other; `changes`:
+/// readings with which they would.
+pub fn constants_apart([taken, other]: [&Part; 2], ratio: f64, changes: &[String]) -> Diagnostic {
+    let advice = if changes.is_empty() {
+        "no other basis brings them together, so check the numbers against the data sheet".to_owned()
+    } else {
+        format!("they would agree with {}", changes.join(", or with "))
+    };
+    with_parts(
+        Diagnostic::new(
+            Code::ConstantsApart,
+            &taken.location,
+            format!(
+                "`{}`: {}, which is taken, is {} than {} says; {advice}",
+                taken.field,
+                taken.given,
+                deviation(ratio),
+                other.quoted(),
+            ),
+        ),
+        &[other],
     )
 }
 

@@ -176,20 +176,20 @@ fn assignments(name: &str, values: &[String]) -> String {
     list(&all, "or")
 }
 
-/// None of several alternative fields is given; each with an example of its value.
-pub fn missing_alternative(at: &Location, section: &str, fields: &[(&str, &str)]) -> Diagnostic {
+/// None of several alternative fields is given; each with its form, a clause.
+pub fn missing_alternative(at: &Location, section: &str, fields: &[(&str, String)]) -> Diagnostic {
     let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
-    let examples: Vec<String> = fields
-        .iter()
-        .map(|(name, example)| format!("{name}: {example}"))
-        .collect();
+    let forms: Vec<&str> = fields.iter().map(|(_, form)| form.as_str()).collect();
+    let forms = match forms.as_slice() {
+        [forms @ .., last] if !forms.is_empty() => format!("{} or {last}", forms.join(", ")),
+        forms => forms.concat(),
+    };
     Diagnostic::new(
         Code::MissingField,
         at,
         format!(
-            "`{section}` lacks the field {}; add one, for example {}",
+            "`{section}` lacks the field {}; add one: {forms}",
             list(&names, "or"),
-            list(&examples, "or"),
         ),
     )
 }
@@ -233,12 +233,16 @@ pub fn needless_field(at: &Location, name: &str, given: &str, condition: &str) -
     )
 }
 
-/// A field that the value of a second field needs.
-pub fn needed_field(at: &Location, setting: &str, name: &str, example: &str) -> Diagnostic {
+/// A field that the value of a second field needs: its section, its name and an example of its value.
+pub fn needed_field(
+    at: &Location,
+    setting: &str,
+    [section, name, example]: [&str; 3],
+) -> Diagnostic {
     Diagnostic::new(
         Code::DependentField,
         at,
-        format!("`{setting}` needs the field `{name}`; add it, for example `{name}: {example}`"),
+        format!("`{setting}` needs the field `{name}` of `{section}`; add it, for example `{name}: {example}`"),
     )
 }
 

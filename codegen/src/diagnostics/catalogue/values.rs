@@ -63,17 +63,17 @@ pub fn forbidden_character(
     )
 }
 
-/// A unit that does not exist.
+/// A unit that does not exist; `right`: what to give, a clause.
 pub fn unknown_unit(
     at: &Location,
     field: &str,
     given: &str,
     unit: &str,
     nearest: Option<&str>,
-    examples: &[String],
+    right: &str,
 ) -> Diagnostic {
     let advice = nearest.map_or_else(
-        || like(at, field, examples),
+        || right.to_owned(),
         |symbol| format!("did you mean `{symbol}`?"),
     );
     Diagnostic::new(
@@ -110,14 +110,14 @@ pub fn ambiguous_unit(
     )
 }
 
-/// A unit of another quantity.
+/// A unit of another quantity; `right`: what to give, a clause.
 pub fn wrong_dimension(
     at: &Location,
     field: &str,
     given: &str,
     got: &str,
     wanted: &str,
-    examples: &[String],
+    right: &str,
 ) -> Diagnostic {
     // Of `gcm²` the compiler refuses the sign, and hands a torque to the macro.
     let is_square = matches!(at, Location::Macro(_)) && (got, wanted) == ("a torque", "an inertia");
@@ -130,8 +130,7 @@ pub fn wrong_dimension(
         Code::WrongDimension,
         at,
         format!(
-            "`{field}`: {given} is {got}, but {wanted} is expected; {}{square}",
-            like(at, field, examples)
+            "`{field}`: {given} is {got}, but {wanted} is expected; {right}{square}"
         ),
     )
 }
@@ -148,15 +147,12 @@ pub fn quantity_of_other_field(
     Diagnostic::new(Code::WrongDimension, at, message)
 }
 
-/// A number without unit.
-pub fn missing_unit(at: &Location, field: &str, given: &str, examples: &[String]) -> Diagnostic {
+/// A number without unit; `right`: what to give, a clause.
+pub fn missing_unit(at: &Location, field: &str, given: &str, right: &str) -> Diagnostic {
     Diagnostic::new(
         Code::MissingUnit,
         at,
-        format!(
-            "`{field}`: {given} has no unit; {}",
-            like(at, field, examples)
-        ),
+        format!("`{field}`: {given} has no unit; {right}"),
     )
 }
 
@@ -257,6 +253,16 @@ pub fn wrong_kind(
             "`{field}`: {given}, but {wanted} is expected; {}",
             like(at, field, examples)
         ),
+    )
+}
+
+/// A value in quotes within a macro call.
+pub fn quoted(at: &Location, field: &str, given: &str) -> Diagnostic {
+    let plain = given.trim_matches('"');
+    Diagnostic::new(
+        Code::MalformedValue,
+        at,
+        format!("`{field}`: in a macro values stand without quotes; write `{field}: {plain}`"),
     )
 }
 

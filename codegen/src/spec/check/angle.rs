@@ -52,7 +52,7 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
     let bits = reader.integer(errors, "angle_bits");
     if !is_given(PAIRS) {
         let of_shaft = pole_pairs.unwrap_or(7).to_string();
-        reader.require_beside(errors, ["rotor", "angle"], &[(PAIRS, &of_shaft)]);
+        reader.require_beside(errors, ["rotor", "angle"], ("motor", &[(PAIRS, &of_shaft)]));
         return None;
     }
     let is_read = pairs.is_some() == is_given(PAIRS)

@@ -21,6 +21,9 @@ const TOLERANCE: f64 = 0.15;
 /// So near are two printed constants that are one number.
 const EQUAL: f64 = 0.01;
 
+/// So near are two constants whose bases are right: no basis is so near to another.
+const ROUNDED: f64 = 0.04;
+
 /// Something that follows from the phase constant and is stated, too.
 struct Claim<'a> {
     code: Code,
@@ -74,8 +77,14 @@ pub(super) fn check(
     let claims = claims(motor, inverter, rest, shape, pole_pairs);
     let (agreeing, failing): (Vec<&Claim>, Vec<&Claim>) =
         claims.iter().partition(|claim| claim.agrees(phase));
-    let [first, more @ ..] = failing.as_slice() else {
-        warnings.extend(mean_for_peak(stated, rest, shape, pole_pairs));
+    if failing.is_empty() {
+        let apart = || apart(stated, rest, shape, pole_pairs);
+        warnings.extend(mean_for_peak(stated, rest, shape, pole_pairs).or_else(apart));
+        return false;
+    }
+    let majority = majority(phase, &claims);
+    let is_odd = |claim: &&&Claim| majority.is_some_and(|constant| !claim.agrees(constant));
+    let Some(first) = failing.iter().find(is_odd).or(failing.first()) else {
         return false;
     };
     let shape_part = reader.part("emf_shape", String::new);
@@ -83,21 +92,31 @@ pub(super) fn check(
     let mut fitting = fitting(others, first, motor, phase);
     // Another reading must not contradict what agrees with this one.
     fitting.retain(|(other, _)| agreeing.iter().all(|claim| claim.agrees(other.phase)));
-    let implied = first.constant / first.factors[0];
     let stated_part = &stated.given.part;
-    let culprit = if !more.is_empty() && failing.iter().all(|claim| claim.agrees(implied)) {
-        // Two against one.
-        stated_part
-    } else if more.is_empty() && !agreeing.is_empty() {
-        first.parts[0]
-    } else {
-        fitting
-            .first()
-            .map_or(first.parts[0], |(other, _)| other.at)
+    let (culprit, agreed) = match majority {
+        Some(constant) => {
+            let is_stated_odd = !fits(constant, phase);
+            let agreed = claims.iter().filter(|claim| claim.agrees(constant));
+            let agreed = agreed.map(|claim| claim.parts[0]);
+            let taken = (!is_stated_odd).then_some(stated_part);
+            let culprit = if is_stated_odd {
+                stated_part
+            } else {
+                first.parts[0]
+            };
+            (culprit, taken.into_iter().chain(agreed).collect())
+        }
+        None => {
+            let fitting = fitting.first();
+            let culprit = fitting.map_or(first.parts[0], |(other, _)| other.at);
+            (culprit, vec![])
+        }
     };
     let mut parts = first.parts.clone();
     parts.push(stated_part);
-    parts.extend(more.iter().flat_map(|claim| claim.parts.iter().copied()));
+    for claim in failing.iter().filter(|claim| claim.parts[0].field != first.parts[0].field) {
+        parts.extend(&claim.parts);
+    }
     let fitting: Vec<(String, String)> = fitting
         .iter()
         .map(|(other, constant)| (other.change.clone(), (first.told)(*constant)))
@@ -115,9 +134,32 @@ pub(super) fn check(
         ratio: expected[0] / first.constant,
         inverse: matches!(first.code, Code::SpeedContradiction),
         parts: &parts,
+        agreed: &agreed,
         fitting: &fitting,
     }));
     true
+}
+
+/// The constant that more than half of all statements agree with, if there is one.
+fn majority(phase: f64, claims: &[Claim]) -> Option<f64> {
+    let implied = claims.iter().flat_map(|claim| {
+        let factors = claim.factors.iter();
+        factors.map(|factor| claim.constant / factor)
+    });
+    let votes = |constant: f64| {
+        let claims = claims.iter().filter(|claim| claim.agrees(constant)).count();
+        claims + usize::from(fits(constant, phase))
+    };
+    let constants = std::iter::once(phase).chain(implied);
+    let mut best = (phase, 0);
+    for constant in constants {
+        let votes = votes(constant);
+        if votes > best.1 {
+            best = (constant, votes);
+        }
+    }
+    let (constant, votes) = best;
+    (2 * votes > 1 + claims.len()).then_some(constant)
 }
 
 /// Everything that is stated beside the constant that is taken.
@@ -188,6 +230,19 @@ fn claims<'a>(
     claims
 }
 
+/// The other bases that a constant may have.
+fn other_readings(stated: &Emf) -> impl Iterator<Item = Reading> + Clone {
+    use Reading::{BlockMean, LinePeak, LineRms, PerPeakAmpere, PerRmsAmpere, PhasePeak, PhaseRms};
+    let readings: &[Reading] = match stated.given.dimension {
+        Some(Dimension::EmfConstant) => &[PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean],
+        Some(Dimension::FluxLinkage) => &[PhasePeak, PhaseRms],
+        Some(Dimension::SpeedConstant) => &[LinePeak, LineRms, BlockMean],
+        _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
+    };
+    let taken = stated.reading;
+    readings.iter().copied().filter(move |reading| *reading != taken)
+}
+
 /// Other readings of the constant that is taken: its other bases, the other shape, and two of them
 /// together.
 fn others<'a>(
@@ -196,14 +251,7 @@ fn others<'a>(
     pole_pairs: u32,
     shape_part: &'a Part,
 ) -> Vec<Other<'a>> {
-    use Reading::{BlockMean, LinePeak, LineRms, PerPeakAmpere, PerRmsAmpere, PhasePeak, PhaseRms};
     let part = &stated.given.part;
-    let readings: &[Reading] = match stated.given.dimension {
-        Some(Dimension::EmfConstant) => &[PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean],
-        Some(Dimension::FluxLinkage) => &[PhasePeak, PhaseRms],
-        Some(Dimension::SpeedConstant) => &[LinePeak, LineRms, BlockMean],
-        _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
-    };
     let (other_shape, word) = match shape {
         EmfShape::Trapezoidal { .. } => (EmfShape::Sinusoidal, "sinusoidal"),
         EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
@@ -219,11 +267,9 @@ fn others<'a>(
     // A voltage from peak to peak was halved.
     let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
     let as_words = |reading| format!("`{}` as `{}`", part.field, words(&stated.given, reading));
-    let is_of_peak = |reading: &Reading| matches!(reading, PhasePeak | LinePeak);
-    let different = readings
-        .iter()
-        .copied()
-        .filter(|reading| *reading != stated.reading && (!is_double || is_of_peak(reading)));
+    let is_of_peak =
+        |reading: &Reading| matches!(reading, Reading::PhasePeak | Reading::LinePeak);
+    let different = other_readings(stated).filter(|reading| !is_double || is_of_peak(reading));
     let whole = is_double.then(|| Other {
         change: format!("`{}` as `{}`", part.field, stated.reading.words()),
         at: part,
@@ -317,6 +363,33 @@ fn mean_for_peak(
     let true_peak = constant * of_phase / Reading::BlockMean.factor(shape);
     let parts = [&stated.given.part, &other.given.part];
     Some(catalogue::mean_for_peak(parts, taken, true_peak))
+}
+
+/// Two constants that state their bases, and are further apart than data sheets round.
+fn apart(stated: &Emf, rest: &[Emf], shape: EmfShape, pole_pairs: u32) -> Option<Diagnostic> {
+    let has_basis = |of: &Emf| !of.given.basis.is_empty();
+    let ratio = |one: &Emf, other: &Emf| {
+        one.phase_constant(shape, pole_pairs) / other.phase_constant(shape, pole_pairs)
+    };
+    let is_apart = |ratio: f64| (ratio - 1.0).abs() > ROUNDED;
+    let mut stating = rest.iter().filter(|other| has_basis(other));
+    let other = stating.find(|other| has_basis(stated) && is_apart(ratio(stated, other)))?;
+    let changes = [[stated, other], [other, stated]].map(|[one, other]| {
+        other_readings(one).filter_map(move |reading| {
+            let given = one.given.clone();
+            let field = given.part.field;
+            let word = words(&given, reading);
+            let changed = ratio(&Emf { given, reading }, other);
+            (!is_apart(changed)).then(|| format!("`{field}` as `{word}`"))
+        })
+    });
+    let changes: Vec<String> = changes.into_iter().flatten().collect();
+    let parts = [&stated.given.part, &other.given.part];
+    Some(catalogue::constants_apart(
+        parts,
+        ratio(stated, other),
+        &changes,
+    ))
 }
 
 #[cfg(test)]

@@ -107,8 +107,13 @@ pub(super) fn read(
 
 /// The places of Hall sensors are learnt from the times between their edges, and the torque constant from the speed,
 /// which must not lag.
-fn refuse_sampled(reader: &Reader, option: &str, errors: &mut Collector) {
-    let why = "without `hall_timer_clock` in `inverter` the time between two edges is known to a control period only";
+fn refuse_sampled(reader: &Reader, option: &'static str, errors: &mut Collector) {
+    if reader.field("hall_capture").is_none() {
+        let clock = [("hall_timer_clock", "1 MHz")];
+        reader.require_beside(errors, [option, "on"], ("inverter", &clock));
+        return;
+    }
+    let why = "the time between two edges is known to a control period only";
     refuse(reader, option, ["hall_capture", "sampled"], why, errors);
 }
 
@@ -194,7 +199,7 @@ fn read_capture(
     let Some(clock) = &inverter.hall_timer_clock else {
         if !inverter.hall_timer_clock_given {
             let clock = [("hall_timer_clock", "1 MHz")];
-            reader.require_beside(errors, ["hall_capture", "timer"], &clock);
+            reader.require_beside(errors, ["hall_capture", "timer"], ("inverter", &clock));
         }
         return None;
     };

@@ -136,7 +136,7 @@ fn read_bus(reader: &Reader, v_bus: Option<&Given>, errors: &mut Collector) -> O
         reader.refuse_without(errors, "v_bus: measured", &OF_MEASURED);
         return Some(BusSource::Fixed);
     }
-    reader.require_beside(errors, ["v_bus", "measured"], &NEEDED);
+    reader.require_beside(errors, ["v_bus", "measured"], ("inverter", &NEEDED));
     let (nominal, adc_bits, range) = (v_bus?, adc_bits?, range?);
     let low = min.map_or(7.0 * nominal.si / 10.0, |given| given.si);
     let high = max.map_or(13.0 * nominal.si / 10.0, |given| given.si);
@@ -423,7 +423,7 @@ fn read_gains(
     for name in SHUNT {
         if reader.field(name).is_none() {
             let (at, example) = (&shunt.location, schema::field(name).example());
-            errors.push(catalogue::needed_field(at, &shunt.name, name, example));
+            errors.push(catalogue::needed_field(at, &shunt.name, ["inverter", name, example]));
         }
     }
     let [ohm, volt] = ["shunt", "adc_reference"].map(|name| reader.plain_quantity(errors, name));

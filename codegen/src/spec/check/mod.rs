@@ -54,12 +54,12 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let mut warnings = vec![];
     let contradicts =
         consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
-    let period = relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
+    let decay = relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
     // A wrong R or L is told of once.
-    if !contradicts && period != Some(true) {
+    if !contradicts && decay != Some(relations::Decay::Absurd) {
         // Torque and EMF in one wrong basis are one mistake.
         let reference = controller.as_ref().map(|spec| spec.common().reference);
-        let context = (reference, ast.board_bus());
+        let context = (reference, ast.board_bus(), decay);
         relations::check_bus(&motor_reader, &motor, &inverter, context, &mut errors);
     }
     sensing_window::check(

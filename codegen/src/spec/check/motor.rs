@@ -225,14 +225,36 @@ fn read_nominal_voltage<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Opti
     Some(given)
 }
 
-/// The rated current is the peak of the wave that belongs to the EMF's shape.
+/// The rated current is the peak of the wave that belongs to the EMF's shape. Beside a flat top it is that of a
+/// quasi-square wave unless it says otherwise; of a sine, data sheets print either.
 fn read_rated_current<'a>(
     reader: &Reader<'a>,
     shape: Option<EmfShape>,
     errors: &mut Collector,
 ) -> Option<Given<'a>> {
     let given = reader.quantity(errors, "rated_current")?;
+    let is_flat = matches!(shape, None | Some(EmfShape::Trapezoidal { .. }));
     match given.basis {
+        [] if !is_flat => {
+            let (at, text) = (&given.part.location, &given.part.given);
+            let peak = shape.map_or(given.si, |shape| given.si * shape.rated_peak());
+            let forms = [
+                (
+                    "peak",
+                    "of the phase current, or what two phases carry in block commutation".to_owned(),
+                ),
+                (
+                    "rms",
+                    format!(
+                        "of the phase current, as servo drives state it: {} peak",
+                        engineering(peak, "A")
+                    ),
+                ),
+            ];
+            let forms = forms.map(|(basis, meaning)| (format!("{text} {basis}"), meaning));
+            errors.push(catalogue::missing_basis(at, "rated_current", text, &forms));
+            None
+        }
         [] | [Basis::Peak] => Some(given),
         [Basis::PeakToPeak] => Some(emf::amplitude(given)),
         [Basis::Rms] => Some(Given {

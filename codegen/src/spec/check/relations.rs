@@ -29,46 +29,61 @@ const LEAST_WATCHED: f64 = 8.0;
 /// No drive switches so fast: where only such a PWM frequency helped, resistance or inductance is wrong, hertz.
 const ABSURD_PWM: f64 = 500e3;
 
-/// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R. Tells whether R or L is wrong.
+/// What R Ts/L tells of the motor's data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Decay {
+    /// It is small, and R and L fit each other.
+    Short,
+    /// It is large, and the period may be.
+    Long,
+    /// R or L is wrong, and that has been told.
+    Absurd,
+    /// R is wrong: its drop alone exceeds the bus, which is still to be told.
+    ByResistance,
+}
+
+/// Accepted: R Ts/L <= 0.5. Refused: a period that is long against L/R.
 pub(super) fn check_period(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
     errors: &mut Collector,
-) -> Option<bool> {
+) -> Option<Decay> {
     let (period, t_s) = (inverter.period.as_ref()?, inverter.t_s?);
     let time_constant = motor.inductance? / motor.resistance?;
-    if t_s / time_constant > GREATEST_DECAY * (1.0 + 1e-9) {
-        let resistance = reader.part("resistance", String::new);
-        let inductance = reader.part("inductance", String::new);
-        let longest = inverter.period_within(GREATEST_DECAY * time_constant);
-        let f_pwm = f64::from(inverter.pwm_per_control) / longest;
-        if f_pwm > ABSURD_PWM {
-            let drop =
-                motor.resistance? * motor.rated_current.as_ref().map_or(0.0, |given| given.si);
-            let bus = inverter
-                .v_bus
-                .as_ref()
-                .map_or(f64::INFINITY, |given| given.si);
-            let (likely, other) = if drop > bus {
-                (resistance, inductance)
-            } else {
-                (inductance, resistance)
-            };
-            let error = catalogue::absurd_time_constant(&likely, &other, time_constant);
-            errors.push(error);
-            return Some(true);
-        }
-        errors.push(catalogue::period_too_long(
-            &period.part,
-            &resistance,
-            &inductance,
-            t_s,
-            time_constant,
-            [longest, f_pwm],
-        ));
+    if t_s / time_constant <= GREATEST_DECAY * (1.0 + 1e-9) {
+        return Some(Decay::Short);
     }
-    Some(false)
+    let resistance = reader.part("resistance", String::new);
+    let inductance = reader.part("inductance", String::new);
+    let longest = inverter.period_within(GREATEST_DECAY * time_constant);
+    let f_pwm = f64::from(inverter.pwm_per_control) / longest;
+    let (current, bus) = (motor.rated_current.as_ref(), inverter.v_bus.as_ref());
+    // Between two terminals, of a sinusoidal current.
+    let drop = 3.0_f64.sqrt() * motor.resistance? * current.map_or(0.0, |given| given.si);
+    let is_beyond = bus.is_some_and(|bus| drop > MOST_OF_BUS * bus.si);
+    if f_pwm > ABSURD_PWM {
+        let (likely, other) = if is_beyond {
+            (resistance, inductance)
+        } else {
+            (inductance, resistance)
+        };
+        let error = catalogue::absurd_time_constant(&likely, &other, time_constant);
+        errors.push(error);
+        return Some(Decay::Absurd);
+    }
+    if is_beyond {
+        return Some(Decay::ByResistance);
+    }
+    errors.push(catalogue::period_too_long(
+        &period.part,
+        &resistance,
+        &inductance,
+        t_s,
+        time_constant,
+        [longest, f_pwm],
+    ));
+    Some(Decay::Long)
 }
 
 /// Most of the bus that EMF and resistive drop of a rating may take: beyond it a value is rather wrong.
@@ -81,7 +96,7 @@ pub(super) fn check_bus(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
-    (reference, board_bus): (Option<Reference>, Option<f64>),
+    (reference, board_bus, decay): (Option<Reference>, Option<f64>, Option<Decay>),
     errors: &mut Collector,
 ) -> Option<()> {
     let (bus, speed, current) = (
@@ -109,7 +124,13 @@ pub(super) fn check_bus(
     let [resistance, inductance] =
         ["resistance", "inductance"].map(|name| reader.part(name, String::new));
     let is_confirmed = motor.emf.len() > 1 || motor.rated_torque.is_some();
-    let values = [&stated.part, &resistance, &inductance];
+    // A resistance that fits the inductance is right, and the current is wrong.
+    let of_drop = if decay == Some(Decay::Short) {
+        &current.part
+    } else {
+        &resistance
+    };
+    let values = [&stated.part, of_drop, &inductance];
     let absurd = catalogue::most_of_absurd([bus.si, raised], voltages, values);
     // A constant that another field states, too, is right.
     if let Some(value) = absurd.filter(|value| value.field != stated.part.field || !is_confirmed) {

@@ -105,7 +105,7 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
         reader.refuse_without(errors, "current_sensing: low_side", &names);
         return Some(CurrentSensing::InPhase);
     }
-    reader.require_beside(errors, [FIELD, LOW_SIDE], &NEEDED);
+    reader.require_beside(errors, [FIELD, LOW_SIDE], ("inverter", &NEEDED));
     Some(CurrentSensing::LowSide(SensingTimes {
         settling: settling?,
         aperture: aperture?,

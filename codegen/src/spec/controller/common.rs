@@ -403,20 +403,16 @@ const COMMUTATION_THRESHOLD: f64 = 0.5;
 /// Refuses the option `name`, if it is stated, because of another setting.
 pub(crate) fn refuse(
     reader: &Reader,
-    name: &str,
+    name: &'static str,
     [other, value]: [&str; 2],
     why: &str,
     errors: &mut Collector,
 ) {
-    if let Some(field) = reader.field(name) {
+    if reader.field(name).is_some() {
         errors.push(catalogue::option_without_effect(
-            &field.location,
-            name,
-            &field.value.to_string(),
-            reader
-                .field(other)
-                .map_or(reader.location(), |field| &field.location),
-            &format!("{other}: {value}"),
+            &reader.part(name, String::new),
+            [other, value],
+            reader.field(other).map(|field| &field.location),
             why,
         ));
     }
@@ -487,18 +483,10 @@ pub(crate) fn read_common(
     let field_weakening =
         traits.pulses_three_legs && read_field_weakening(reader, reference, errors);
 
-    if let Some(advance) = advanced
-        && reference == Reference::Proportional
-        && traits.advance_idle
-    {
-        errors.push(catalogue::option_without_effect(
-            &advance.part.location,
-            "advance",
-            &advance.part.given,
-            reader.field("reference").map_or(reader.location(), |field| &field.location),
-            "reference: proportional",
-            "advance shifts sectors and commutations, which this reference does not use unless a leg is turned off",
-        ));
+    if advanced.is_some() && reference == Reference::Proportional && traits.advance_idle {
+        let why = "advance shifts sectors and commutations, which this reference does not use unless a leg is turned off";
+        let proportional = ["reference", "proportional"];
+        refuse(reader, "advance", proportional, why, errors);
     }
     Some(LoopOptions {
         emf,
@@ -660,34 +648,18 @@ fn read_learning(
 /// The filter coefficient of the estimate; 1 without an estimate, where the option has no effect.
 fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
     let filter = reader.plain(errors, "emf_filter");
-    let (other, reason) = match emf {
+    let why = match emf {
         EmfSource::Estimated => {
             return filter.map_or_else(|| reader.preset_number("emf_filter"), |given| given.si);
         }
-        EmfSource::Model => (
-            "emf: model",
-            "the filter smooths the estimate, which the model does not use",
-        ),
-        EmfSource::Observer => (
-            "emf: observer",
-            "the filter smooths the estimate, and the observer has a gain of its own",
-        ),
-        EmfSource::Held => (
-            "emf: held",
-            "the filter smooths the estimate, and a held EMF is not filtered",
-        ),
+        EmfSource::Model => "the filter smooths the estimate, which the model does not use",
+        EmfSource::Observer => {
+            "the filter smooths the estimate, and the observer has a gain of its own"
+        }
+        EmfSource::Held => "the filter smooths the estimate, and a held EMF is not filtered",
     };
-    if let Some(filter) = &filter {
-        errors.push(catalogue::option_without_effect(
-            &filter.part.location,
-            "emf_filter",
-            &filter.part.given,
-            reader
-                .field("emf")
-                .map_or(reader.location(), |field| &field.location),
-            other,
-            reason,
-        ));
+    if filter.is_some() {
+        refuse(reader, "emf_filter", ["emf", emf.word()], why, errors);
     }
     1.0
 }
@@ -708,18 +680,10 @@ fn read_speed_loop(
             ("acceleration_limit", acceleration),
         ];
         for (option, given) in options {
-            let Some(given) = given else { continue };
-            let why = "no speed controller is generated";
-            errors.push(catalogue::option_without_effect(
-                &given.part.location,
-                option,
-                &given.part.given,
-                reader
-                    .field("speed_loop")
-                    .map_or(reader.location(), |field| &field.location),
-                "speed_loop: off",
-                why,
-            ));
+            if given.is_some() {
+                let why = "no speed controller is generated";
+                refuse(reader, option, ["speed_loop", "off"], why, errors);
+            }
         }
         return None;
     }
@@ -745,8 +709,7 @@ fn read_speed_loop(
         errors.push(catalogue::needed_field(
             at,
             "speed_loop: on",
-            "inertia",
-            "24 g cm2",
+            ["motor", "inertia", "24 g cm2"],
         ));
         return None;
     };
@@ -832,8 +795,7 @@ pub(crate) fn read_dead_time_compensation(
         errors.push(catalogue::needed_field(
             &field.location,
             &setting,
-            "dead_time",
-            "500 ns",
+            ["inverter", "dead_time", "500 ns"],
         ));
     }
     is_on

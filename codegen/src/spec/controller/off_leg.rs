@@ -1,6 +1,7 @@
 //! The option `off_leg` of controllers that apply whole vectors.
 
-use crate::diagnostics::{Collector, catalogue};
+use super::common::refuse;
+use crate::diagnostics::Collector;
 use crate::spec::ast::Value;
 use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
@@ -30,16 +31,8 @@ pub(super) fn read_off_leg(
         && let Some(field) = reader.field("off_leg")
         && let Value::Word(_) = field.value
     {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "off_leg",
-            &field.value.to_string(),
-            reader
-                .field("candidates")
-                .map_or(reader.location(), |field| &field.location),
-            "candidates: three_phase",
-            "these candidates turn no leg off",
-        ));
+        let why = "these candidates turn no leg off";
+        refuse(reader, "off_leg", ["candidates", "three_phase"], why, errors);
     }
     model
 }

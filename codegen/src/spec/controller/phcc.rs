@@ -241,16 +241,11 @@ fn read_candidates(
         .unwrap_or(by_default);
     if !is_derived
         && candidates == PhccCandidates::ThreePhase
-        && let (Some(field), Some(cause)) = (reader.field("candidates"), reader.field("table"))
+        && let Some(table) = reader.field("table")
     {
-        errors.push(catalogue::option_without_effect(
-            &field.location,
-            "candidates",
-            "three_phase",
-            &cause.location,
-            "a table that is not derived",
-            "they are the candidates of the derived table",
-        ));
+        let why = "they are the candidates of the derived table";
+        let table = table.value.to_string();
+        refuse(reader, "candidates", ["table", &table], why, errors);
     }
     candidates
 }

@@ -6,7 +6,6 @@ use super::common::{
 };
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
-use crate::diagnostics::catalogue;
 use crate::spec::options::{Row, if_on, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
@@ -131,19 +130,8 @@ impl Options for PiPwmSpec {
                 "hall_learning",
                 "torque_learning",
             ] {
-                let Some(field) = reader.field(name) else {
-                    continue;
-                };
-                errors.push(catalogue::option_without_effect(
-                    &field.location,
-                    name,
-                    &field.value.to_string(),
-                    reader
-                        .field("feed_forward")
-                        .map_or(reader.location(), |field| &field.location),
-                    "feed_forward: off",
-                    "the EMF is used only for feed-forward",
-                ));
+                let why = "the EMF is used only for feed-forward";
+                refuse(reader, name, ["feed_forward", "off"], why, errors);
             }
         }
         let why = "one leg of the pair is low throughout and the third is off";
@@ -222,18 +210,8 @@ fn check_six_step(reader: &Reader, errors: &mut Collector) {
         let Some(field) = reader.field(name) else {
             continue;
         };
-        let given = field.value.to_string();
-        if value.is_none_or(|value| value == given) {
-            errors.push(catalogue::option_without_effect(
-                &field.location,
-                name,
-                &given,
-                reader
-                    .field("six_step")
-                    .map_or(reader.location(), |field| &field.location),
-                "six_step: on",
-                why,
-            ));
+        if value.is_none_or(|value| value == field.value.to_string()) {
+            refuse(reader, name, ["six_step", "on"], why, errors);
         }
     }
 }

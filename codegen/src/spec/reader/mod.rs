@@ -96,18 +96,22 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reports missing fields, each with an example, that the `value` of another one needs.
+    /// Reports missing fields of a section, each with an example, that the `value` of another one needs.
     pub fn require_beside(
         &self,
         errors: &mut Collector,
         [of, value]: [&str; 2],
-        fields: &[(&str, &str)],
+        (section, fields): (&str, &[(&str, &str)]),
     ) {
         for (name, example) in fields {
             if self.may_lack(name) {
                 let at = self.field(of).map_or(&self.at, |field| &field.location);
                 let setting = format!("{of}: {value}");
-                errors.push(catalogue::needed_field(at, &setting, name, example));
+                errors.push(catalogue::needed_field(
+                    at,
+                    &setting,
+                    [section, name, example],
+                ));
             }
         }
     }
@@ -146,10 +150,9 @@ impl<'a> Reader<'a> {
     /// Reports when none of some fields is given.
     pub fn require_any_of(&self, errors: &mut Collector, names: &[&str]) {
         if names.iter().all(|name| self.may_lack(name)) {
-            let fields: Vec<(&str, &str)> = names
-                .iter()
-                .map(|name| (*name, self.field_rule(name).example()))
-                .collect();
+            let rules = names.iter().map(|name| self.field_rule(name));
+            let fields: Vec<(&str, String)> =
+                rules.map(|rule| (rule.name, rule.form())).collect();
             errors.push(catalogue::missing_alternative(&self.at, self.name, &fields));
         }
     }

@@ -112,20 +112,20 @@ impl<'a> Reader<'a> {
         else {
             return None;
         };
-        let (at, text, examples) = (
+        let (at, text, right) = (
             &given.part.location,
             &given.part.given,
-            self.field_rule(name).examples(given.basis),
+            self.field_rule(name).unit_to_give(given.basis),
         );
         let Some(dimension) = given.dimension else {
-            errors.push(catalogue::missing_unit(at, name, text, &examples));
+            errors.push(catalogue::missing_unit(at, name, text, &right));
             return None;
         };
         if !dimensions.contains(&dimension) {
             let (got, wanted) = (dimension.name(), dimensions[0].name());
             errors.push(match other_names::of_emf(name, dimension) {
                 Some(meant) => catalogue::quantity_of_other_field(at, name, text, got, meant),
-                None => catalogue::wrong_dimension(at, name, text, got, wanted, &examples),
+                None => catalogue::wrong_dimension(at, name, text, got, wanted, &right),
             });
             return None;
         }
@@ -165,9 +165,9 @@ impl<'a> Reader<'a> {
             && !matches!(dimension, Dimension::Time | Dimension::Periods)
         {
             let wanted = "a time or a number of periods";
-            let (got, examples) = (dimension.name(), self.field_rule(name).examples(&[]));
+            let (got, right) = (dimension.name(), self.field_rule(name).unit_to_give(&[]));
             errors.push(catalogue::wrong_dimension(
-                at, name, text, got, wanted, &examples,
+                at, name, text, got, wanted, &right,
             ));
             return None;
         }
@@ -303,6 +303,13 @@ impl<'a> Reader<'a> {
         let given = match &field.value {
             Value::Malformed(_) => return None,
             Value::Word(word) => word.clone(),
+            Value::Number(number) if choices.iter().all(|(word, _)| *word != number.digits) => {
+                let words: Vec<String> =
+                    choices.iter().map(|(word, _)| (*word).to_owned()).collect();
+                let (at, given) = (&field.location, number.to_string());
+                errors.push(catalogue::wrong_kind(at, name, &given, "a word", &words));
+                return None;
+            }
             other => other.to_string(),
         };
         let plain = given.replace('-', "_").to_lowercase();

@@ -367,7 +367,7 @@ inductance = "0.301 mH phase to phase"
 torque_constant = "40.4 mNm/A block_mean"
 speed_constant = "236 rpm/V block_mean"
 emf_shape = "sine"
-rated_current = "3.29 A"
+rated_current = "3.29 A peak"
 rated_torque = "134 mNm"
 rated_speed = "4750 rpm"
 no_load_speed = "5600 rpm"
@@ -420,7 +420,7 @@ inductance = "0.733 mH phase to phase"
 back_emf = "6.64 Vpeak/kRPM line-to-line"
 torque_constant = "8.37 oz-in/A"
 emf_shape = "sine"
-rated_current = "7.1 A"
+rated_current = "7.1 A peak"
 rated_torque = "60 oz-in"
 rated_speed = "3000 RPM""#,
         48,
@@ -454,12 +454,12 @@ fn rms_volts_and_rms_amperes_agree() {
 #[test]
 fn a_kv_rating_is_enough() {
     let text = "poles = 14\nresistance = \"50.8 mohm terminal\"\ninductance = \"17.46 uH terminal\"\n\
-                speed_constant = \"150 rpm/V peak\"\nemf_shape = \"sine\"\nrated_current = \"30 A\"\nrated_speed = \"4000 rpm\"";
+                speed_constant = \"150 rpm/V peak\"\nemf_shape = \"sine\"\nrated_current = \"30 A peak\"\nrated_speed = \"4000 rpm\"";
     let motor = of_file(&newcomer(text, 48, 80)).motor;
     assert_eq!(motor.pole_pairs, 7);
     near(motor.emf_constant, 30.0 / PI / 150.0 / 3_f64.sqrt());
     let text = "poles = 30\nresistance = \"0.4 ohm phase-to-phase\"\ninductance = \"0.6 mH phase-to-phase\"\n\
-                speed_constant = \"16 rpm/V peak\"\nemf_shape = \"trapezoid\"\nrated_current = \"10 A\"\nrated_speed = \"400 rpm\"";
+                speed_constant = \"16 rpm/V peak\"\nemf_shape = \"trapezoid\"\nrated_current = \"10 A peak\"\nrated_speed = \"400 rpm\"";
     let motor = of_file(&newcomer(text, 36, 30)).motor;
     near(motor.emf_constant, 30.0 / PI / 16.0 / 2.0);
     // What a meter shows is no peak.

@@ -22,7 +22,7 @@ pub(super) const COMPLETE_CALL: &str = "pub Hub {
         winding: star,
         back_emf: 0.1648 V/(rad/s) line_to_line peak,
         emf_shape: trapezoidal,
-        rated_current: 20 A,
+        rated_current: 20 A peak,
         rated_torque: 3.3 Nm,
         rated_speed: 2000 rpm,
     },
@@ -46,7 +46,7 @@ inductance = "0.22 mH per_phase"
 winding = "star"
 back_emf = "0.1648 V/(rad/s) line_to_line peak"
 emf_shape = "trapezoidal"
-rated_current = "20 A"
+rated_current = "20 A peak"
 rated_speed = "2000 rpm"
 [inverter]
 bus_voltage = "48 V"
@@ -323,7 +323,7 @@ fn remedies_of_a_bus_that_is_too_low_are_accepted_without_a_warning() {
     assert_eq!(codes("bus_voltage: 44.08 V"), []);
     assert_eq!(codes("bus_voltage: 24 V; rated_speed: 982.4 rpm"), []);
     // A sine drops less between two terminals than two resistances do: 27.2 V of these 29.6 V.
-    let sine = "resistance: 620 mohm line_to_line; inductance: 0.1 mH line_to_line; back_emf: 270 rpm/V line_to_line peak; emf_shape: sinusoidal; -rated_torque; rated_current: 30 A; rated_speed: 3000 rpm; bus_voltage: 29.6 V; f_pwm: 50 kHz; adc_range: 80 A";
+    let sine = "resistance: 620 mohm line_to_line; inductance: 0.1 mH line_to_line; back_emf: 270 rpm/V line_to_line peak; emf_shape: sinusoidal; -rated_torque; rated_current: 30 A peak; rated_speed: 3000 rpm; bus_voltage: 29.6 V; f_pwm: 50 kHz; adc_range: 80 A";
     assert_eq!(codes(sine), []);
 }
 

@@ -8,7 +8,7 @@ pub(super) const MACRO: &str = r"
     pub HubDrive {
         motor: { pole_pairs: 4, resistance: 135 mohm per_phase, inductance: 0.22mH per_phase,
                  winding: star, back_emf: 0.1648 V/(rad/s) line_to_line peak,
-                 emf_shape: trapezoidal, rated_current: 20A, rated_torque: 3.3 Nm,
+                 emf_shape: trapezoidal, rated_current: 20A peak, rated_torque: 3.3 Nm,
                  rated_speed: 2000 rpm, inertia: 24 g cm2, inductance_tolerance: 15 %,
                  hall_codes: [1, 5, 4, 6, 2, 3] },
         inverter: { bus_voltage: 48V, f_pwm: 20 kHz, timer_clock: 72 MHz, adc_bits: 12,
@@ -39,7 +39,7 @@ adc_bits = 12
 adc_range = "40 A"
 current_sensing = "in_phase"
 [assumed.motor]
-rated_current = { value = "20 A", reason = "from the torque" }
+rated_current = { value = "20 A peak", reason = "from the torque" }
 [controller]
 kind = "pdcc"
 modulation = "pair"

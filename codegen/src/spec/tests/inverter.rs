@@ -12,7 +12,7 @@ inductance = "0.22 mH per_phase"
 winding = "star"
 back_emf = "0.1648 V/(rad/s) line_to_line peak"
 emf_shape = "trapezoidal"
-rated_current = "20 A"
+rated_current = "20 A peak"
 rated_speed = "2000 rpm"
 [inverter]
 bus_voltage = "48 V"
@@ -519,7 +519,7 @@ fn hall_sensors_are_learnt_with_timed_edges_and_the_observer() {
     assert_eq!(learns(clock, "hall_learning = \"on\""), Ok(true));
     let told = learns("", "hall_learning = \"on\"").expect_err("edges at samples");
     assert!(
-        told.contains("`hall_learning`: on has no effect with `hall_capture = \"sampled\"`"),
+        told.contains("`hall_learning = \"on\"` needs the field `hall_timer_clock` of `inverter`"),
         "{told}"
     );
     let told = learns(clock, "emf = \"model\"\nhall_learning = \"on\"").expect_err("no observer");
@@ -547,7 +547,7 @@ fn the_torque_constant_is_learnt_with_a_measured_bus_and_the_observer_and_withou
         (
             [measured, ""],
             observer,
-            "`torque_learning`: on has no effect with `hall_capture = \"sampled\"`",
+            "`torque_learning = \"on\"` needs the field `hall_timer_clock` of `inverter`",
         ),
         (
             ["", clock],
@@ -613,7 +613,7 @@ fn a_thousandth_of_a_value_is_one_error() {
         checked.expect_err("is in error").to_string()
     };
     for (old, new, field) in [
-        ("\"20 A\"", "\"20 mA\"", "`rated_current`: 20 mA is "),
+        ("\"20 A peak\"", "\"20 mA\"", "`rated_current`: 20 mA is "),
         ("0.22 mH", "0.22 uH", "`inductance`: 0.22 uH per_phase is "),
         ("135 mohm", "135 ohm", "`resistance`: 135 ohm per_phase is "),
     ] {
@@ -635,6 +635,6 @@ fn a_thousandth_of_a_value_is_one_error() {
         text.contains("write `torque_constant = \"40.4 mNm/A block_mean\"`"),
         "{text}"
     );
-    let told = told("\"20 A\"", "\"100 mA\"");
+    let told = told("\"20 A peak\"", "\"100 mA\"");
     assert!(told.contains("or give at least 195.4 mA"), "{told}");
 }

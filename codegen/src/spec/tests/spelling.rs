@@ -58,7 +58,7 @@ fn stray_signs_are_no_part_of_a_quantity() {
             "cannot read `20_ A`; write it like `rated_current = \"20 A\"`",
         ),
     ] {
-        let told = changed("\"20 A\"", &format!("\"{value}\""));
+        let told = changed("\"20 A peak\"", &format!("\"{value}\""));
         assert_eq!(
             told,
             format!("hub.toml:8:17: error[HX0201]: `rated_current`: {message}"),
@@ -213,7 +213,8 @@ fn bytes_that_are_no_text_are_told_with_their_place() {
 
 const BOTH: &str =
     r#"`resistance = "135 mohm per_phase"` or `resistance = "135 mohm line_to_line"`"#;
-const LINE: &str = r#"write it like `resistance = "135 mohm line_to_line"`"#;
+const UNIT: &str = "give a unit such as `mohm`";
+const UNIT_OF_BOTH: &str = "give a unit such as `mohm`, with `per_phase` (of one winding) or `line_to_line` (between two terminals)";
 const CHOICE: &str = "write `per_phase` (of one winding) or `line_to_line` (between two terminals)";
 
 #[test]
@@ -228,13 +229,13 @@ fn no_remedy_offers_a_basis_that_was_not_named() {
             r#"write `resistance = "135 mohm per_phase"` (of one winding) or `resistance = "135 mohm line_to_line"` (between two terminals: 67.5 mohm per phase of a star)"#.to_owned(),
         ),
         ("135 mohm phase", "write either `per_phase` or `line_to_line`".to_owned()),
-        ("0.135", format!("write it like {BOTH}")),
-        ("0.135 line_to_line", LINE.to_owned()),
-        ("135 furlong", format!("write it like {BOTH}")),
-        ("135 furlong terminal", LINE.to_owned()),
-        ("135 furlong line-to-line", LINE.to_owned()),
-        ("135 mH line_to_line", LINE.to_owned()),
-        ("135 mH", format!("write it like {BOTH}")),
+        ("0.135", UNIT_OF_BOTH.to_owned()),
+        ("0.135 line_to_line", UNIT.to_owned()),
+        ("135 furlong", UNIT_OF_BOTH.to_owned()),
+        ("135 furlong terminal", UNIT.to_owned()),
+        ("135 furlong line-to-line", UNIT.to_owned()),
+        ("135 mH line_to_line", UNIT.to_owned()),
+        ("135 mH", UNIT_OF_BOTH.to_owned()),
         ("135 mohm!", format!("write it like {BOTH}")),
         ("0x87 mohm", format!("write it like {BOTH}")),
         ("small", format!("write it like {BOTH}")),

@@ -253,7 +253,7 @@ pub(super) const KNOWN: &[(D, &[&str])] = &[
     (D::Frequency, &["Hz", "kHz", "MHz", "GHz"]),
     (
         D::Speed,
-        &["rpm", "krpm", "min-1", "1/min", "r/min", "rad/s"],
+        &["rpm", "krpm", "min-1", "1/min", "r/min", "rps", "rad/s"],
     ),
     (
         D::EmfConstant,

@@ -89,6 +89,13 @@ pub const NAMES: &[Name] = &[
         [PI, 30.0],
         NIST,
     ),
+    name(
+        &["rps"],
+        "",
+        &[(X::Radian, 1), (X::Second, -1)],
+        [2.0 * PI, 1.0],
+        NIST,
+    ),
     name(&["rev", "r"], "", &[(X::Turn, 1)], [1.0, 1.0], NIST),
     name(
         &["kgf", "kp"],

@@ -60,7 +60,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         checked(&draft.text(), &options.file, false).map_err(refused)?;
         draft.ask(&mut std::io::stdin().lock().lines(), &options.file)?;
     }
-    let missing = draft.missing();
+    let missing = draft.missing(&options.file);
     let text = draft.text();
     let wrong = checked(&text, &options.file, missing.is_empty());
     // Answers are not lost: what is wrong between them is corrected in the file.
@@ -121,7 +121,7 @@ fn given(arguments: &[String]) -> Result<Values, Failure> {
                 "cannot read `{argument}`; write FIELD=VALUE, for example poles=8"
             )));
         };
-        let (name, value) = (name.trim(), value.trim());
+        let (name, value) = (name.trim(), unquoted(value));
         if values.iter().any(|(other, _)| other == name) {
             return Err(Failure::Argument(format!(
                 "`{name}` is given twice; keep one of the two"
@@ -199,11 +199,19 @@ impl Draft {
             .filter(|(name, _)| line.fields.contains(&name.as_str()))
     }
 
-    /// Needed fields without value and default.
-    fn missing(&self) -> Vec<&'static str> {
+    /// Fields without value and default that a drive needs, or that those which are given call for: the `winding` of
+    /// a value per phase.
+    fn missing(&self, file: &Path) -> Vec<&'static str> {
+        let missing = errors(&self.text(), file).into_iter();
+        let missing = missing.filter(|error| error.code == Code::MissingField);
+        let missing: Vec<String> = missing.map(|error| error.message).collect();
+        let is_missing = |line: &&Line| {
+            let lacks = format!("lacks the field `{}`", line.fields[0]);
+            line.is_needed || missing.iter().any(|message| message.contains(&lacks))
+        };
         self.all_lines()
-            .filter(|line| line.is_needed && line.default.is_none())
-            .filter(|line| self.values_of(line).next().is_none())
+            .filter(|line| line.default.is_none() && self.values_of(line).next().is_none())
+            .filter(is_missing)
             .map(|line| line.fields[0])
             .collect()
     }
@@ -229,17 +237,19 @@ impl Draft {
         }
         let mut asked: Vec<&str> = Vec::new();
         while let Some(line) = self.next_question(&asked, file) {
-            note(&format!(
-                "{}\n  {} ",
-                line.about.replace("\n# ", " "),
-                names(line)
-            ));
+            let about = line.about.replace("\n# ", " ");
+            let optional = if line.is_asked {
+                ", empty if the data sheet does not state it"
+            } else {
+                ""
+            };
+            note(&format!("{about}\n  {}{optional} ", names(line)));
             let Some(answer) = answer(answers, line.example)? else {
                 return Ok(());
             };
             let (name, value) = match answer.split_once('=') {
-                Some((name, value)) => (name.trim(), value.trim()),
-                None => (line.fields[0], answer.as_str()),
+                Some((name, value)) => (name.trim(), unquoted(value)),
+                None => (line.fields[0], unquoted(&answer)),
             };
             if !line.fields.contains(&name) {
                 note(&format!(
@@ -255,17 +265,13 @@ impl Draft {
         Ok(())
     }
 
-    /// The first line that is needed and neither given nor asked for. An answer may call for further
-    /// ones: the `winding` of a value per phase.
+    /// The first line that is missing, or asked for where a sheet states it, and was not asked for yet.
     fn next_question(&self, asked: &[&str], file: &Path) -> Option<&'static Line> {
-        let missing = errors(&self.text(), file).into_iter();
-        let missing = missing.filter(|error| error.code == Code::MissingField);
-        let missing: Vec<String> = missing.map(|error| error.message).collect();
+        let missing = self.missing(file);
         self.all_lines().find(|line| {
-            let lacks = format!("lacks the field `{}`", line.fields[0]);
-            let is_missing = missing.iter().any(|message| message.contains(&lacks));
-            let is_open = (line.is_needed || is_missing) && line.default.is_none();
-            is_open && self.values_of(line).next().is_none() && !asked.contains(&line.fields[0])
+            let is_open = line.is_asked && self.values_of(line).next().is_none();
+            let name = &line.fields[0];
+            (is_open || missing.contains(name)) && !asked.contains(name)
         })
     }
 
@@ -380,6 +386,13 @@ fn names(line: &Line) -> String {
     }
 }
 
+/// A value without the quotes that it has in a file.
+fn unquoted(value: &str) -> &str {
+    let value = value.trim();
+    let inner = value.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+    inner.unwrap_or(value)
+}
+
 /// `name = value`; numbers, flags and lists stand without quotes.
 fn entry(name: &str, value: &str) -> String {
     let is_bare = value.parse::<i64>().is_ok()
@@ -455,7 +468,10 @@ mod tests {
             "trapezoidal",
             "torque_constant=3.6 Ncm/A block_mean",
             "6.9 A",
-            "3500 rpm",
+            "",
+            "\"3500 rpm\"",
+            "6200 rpm",
+            "24 V",
             "24 V",
             "72 MHz",
             "shunt=5 mohm",

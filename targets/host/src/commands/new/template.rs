@@ -10,6 +10,8 @@ pub struct Line {
     pub example: &'static str,
     /// Whether a drive needs it.
     pub is_needed: bool,
+    /// Whether it is asked for though a drive does not need it: it tells wrong answers to other questions.
+    pub is_asked: bool,
     /// The value where none is given.
     pub default: Option<&'static str>,
     /// Another field, and the value of it, without which it has no place in the file; an empty value stands for any.
@@ -26,6 +28,7 @@ const fn needed(
         about,
         example,
         is_needed: true,
+        is_asked: false,
         default: None,
         only_with: None,
     }
@@ -36,6 +39,13 @@ impl Line {
         Self {
             is_needed: false,
             ..self
+        }
+    }
+
+    const fn asked(self) -> Self {
+        Self {
+            is_asked: true,
+            ..self.optional()
         }
     }
 
@@ -101,23 +111,29 @@ const MOTOR: &[Line] = &[
     ),
     needed(
         &["rated_current"],
-        "Continuous current of a phase: its peak, or rms.",
-        "20 A",
+        "Continuous current of a phase: its peak, or rms (servo motors).",
+        "20 A peak",
     ),
     needed(
         &["rated_torque"],
         "Torque at rated current; checked against the EMF.",
         "3.3 Nm",
     )
-    .optional(),
+    .asked(),
     needed(&["rated_speed"], "Speed under load at rated torque.", "2000 rpm"),
     needed(
         &["no_load_speed"],
-        "Speed without load, with nominal_voltage where that is not the bus; checked against the EMF.",
+        "Speed without load; checked against the EMF.",
         "2700 rpm",
     )
-    .optional(),
-    needed(&["nominal_voltage"], "Voltage of the no-load speed.", "48 V").optional(),
+    .asked(),
+    needed(
+        &["nominal_voltage"],
+        "Voltage of the no-load speed, where that is not the bus voltage.",
+        "48 V",
+    )
+    .asked()
+    .only_with("no_load_speed", ""),
     needed(&["inertia"], "Of the rotor and what it moves; needed for speed control.", "24 g cm2").optional(),
     needed(
         &["rotor"],
