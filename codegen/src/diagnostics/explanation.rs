@@ -118,8 +118,8 @@ impl Code {
             ),
             Self::UnknownBoard => say(
                 "The library has no board of this name.",
-                "a call or motor file with `board: \"vesc-5\"`",
-                "`board: \"vesc-4\"`",
+                "a motor file with `board = \"vesc-5\"`",
+                "`board = \"vesc-4\"`",
                 "Choose a board that `hexagen boards` lists, or give the path of a board's file.",
             ),
             _ => say(
@@ -488,7 +488,7 @@ impl Code {
                 "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",
                 "rated_speed = \"2500 rpm\"",
                 "rated_speed = \"2000 rpm\"",
-                "Nothing is wrong with the drive. A little beyond, torque ripples; farther, it falls: `hexagen check` simulates the drive, and `hexagen limit` finds where its mean torque ends. Raise the bus, or state the speed that is meant under load. `field_weakening: on` makes more torque there, with ripple.",
+                "Nothing is wrong with the drive. A little beyond, torque ripples; farther, it falls: `hexagen check` simulates the drive, and `hexagen limit` finds where its mean torque ends. Raise the bus, or state the speed that is meant under load. `field_weakening = \"on\"` makes more torque there, with ripple.",
             ),
             Self::TripFarAbove => say(
                 "A fault makes as much current as the trip level before the drive stops.",

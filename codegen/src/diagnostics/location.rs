@@ -93,7 +93,7 @@ fn quoted(value: &str) -> String {
     }
 }
 
-/// `file:line:col`, as editors and terminals recognise it; a macro call is named `macro`.
+/// `file:line:col`, as editors and terminals recognise it; a macro call is named `macro`, and an argument so.
 impl fmt::Display for Location {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -105,7 +105,10 @@ impl fmt::Display for Location {
                 None => out.write_str("macro"),
             },
             Self::File { file, line, column } => write!(out, "{file}:{line}:{column}"),
-            Self::Variant { text, column } => write!(out, "{text}:1:{column}"),
+            Self::Variant { text, column: 1 } => write!(out, "argument `{text}`"),
+            Self::Variant { text, column } => {
+                write!(out, "argument `{text}`, character {column}")
+            }
         }
     }
 }

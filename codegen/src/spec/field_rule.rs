@@ -87,7 +87,10 @@ impl FieldRule<'_> {
             .iter()
             .map(|(basis, meaning)| (basis.word(), *meaning))
             .collect();
-        format!("give a unit such as `{unit}`, with {}", with_meanings(&words))
+        format!(
+            "give a unit such as `{unit}`, with {}",
+            with_meanings(&words)
+        )
     }
 
     /// Examples of the field's value, one for each possible basis, so that no basis is suggested

@@ -10,6 +10,7 @@
 
 use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use crate::judgement::coarse_period;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
 use hexagen_codegen::spec::{Field, OF_CORE, apply_variant};
@@ -133,6 +134,8 @@ impl Tried {
 pub struct Advice {
     /// Name of the motor.
     pub motor: String,
+    /// Rated torque, Nm, of which the percentages are.
+    pub rated_torque_nm: f64,
     /// The variants.
     pub tried: Vec<Tried>,
     /// Place of the recommended one; none if all trip or are refused.
@@ -187,8 +190,11 @@ pub struct Regret {
 /// A plant parameter out of range; a motor of which no variant is generated.
 pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, LabError> {
     let prepared = prepare(motor)?;
+    let mut generated = prepared.iter().filter_map(|(_, drive)| drive.as_ref().ok());
+    let first = generated.next();
     let mut advice = Advice {
         motor: motor.source.name.clone(),
+        rated_torque_nm: first.map_or(0.0, Prepared::rated_torque),
         tried: try_all(&prepared, progress)?,
         recommended: None,
         reason: String::new(),
@@ -206,6 +212,11 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         advice.tried[k].limit_pct = limit;
     }
     advice.recommend(&mut left);
+    if advice.recommended.is_none()
+        && let Some(coarse) = first.and_then(|drive| coarse_period(&drive.spec))
+    {
+        advice.reason.push_str(&coarse);
+    }
     Ok(advice)
 }
 
@@ -467,9 +478,10 @@ impl Regret {
 /// What is against a variant that is refused, trips or takes longer than the period.
 fn works(tried: &Tried) -> Option<String> {
     if let Some(reason) = &tried.refused {
-        let line = reason.lines().next().unwrap_or_default();
-        let start = line.find("error[").unwrap_or(0);
-        return Some(format!("refused: {}", &line[start..]));
+        let code = reason
+            .split_once("error[")
+            .and_then(|(_, rest)| rest.split_once(']'));
+        return Some(code.map_or("refused".to_owned(), |(code, _)| format!("refused: {code}")));
     }
     if tried.overruns {
         return Some("a step may take longer than the control period".to_owned());
@@ -511,6 +523,7 @@ mod tests {
     fn trips_torque_ripple_and_deviations_count_before_cycles() {
         let mut advice = Advice {
             motor: String::new(),
+            rated_torque_nm: 1.0,
             tried: vec![
                 tried("default", [99.9, 1.0], [99.0, 3.0], 400),
                 tried("trips", [f64::NAN, 0.1], [100.0, 0.1], 10),

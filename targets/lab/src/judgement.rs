@@ -295,7 +295,7 @@ impl Point {
 }
 
 /// A clause on a rotor that turns far in a control period; none where it does not.
-fn coarse_period(spec: &Spec) -> Option<String> {
+pub(crate) fn coarse_period(spec: &Spec) -> Option<String> {
     let degrees = degrees_per_period(spec);
     let finer = match spec.inverter.rotor_sensing {
         RotorSensing::SampledHalls => ", or state `hall_timer_clock`, a timer of the Hall edges",

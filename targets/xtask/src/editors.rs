@@ -18,7 +18,11 @@ pub fn install() -> Result<(), String> {
     if has_server && has_library_source()? {
         return Ok(());
     }
-    if succeeds(Command::new("rustup").args(["component", "add"]).args(COMPONENTS)) {
+    if succeeds(
+        Command::new("rustup")
+            .args(["component", "add"])
+            .args(COMPONENTS),
+    ) {
         return Ok(());
     }
     Err("rust-analyzer or the source of the standard library is missing, and rustup did not install them; by hand: `rustup component add rust-analyzer rust-src`, or the packages rust-analyzer and rust-src of your system".to_owned())

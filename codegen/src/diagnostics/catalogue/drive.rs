@@ -358,7 +358,8 @@ fn agreement(of: &Contradiction) -> String {
 /// readings with which they would.
 pub fn constants_apart([taken, other]: [&Part; 2], ratio: f64, changes: &[String]) -> Diagnostic {
     let advice = if changes.is_empty() {
-        "no other basis brings them together, so check the numbers against the data sheet".to_owned()
+        "no other basis brings them together, so check the numbers against the data sheet"
+            .to_owned()
     } else {
         format!("they would agree with {}", changes.join(", or with "))
     };

@@ -242,7 +242,9 @@ pub fn needed_field(
     Diagnostic::new(
         Code::DependentField,
         at,
-        format!("`{setting}` needs the field `{name}` of `{section}`; add it, for example `{name}: {example}`"),
+        format!(
+            "`{setting}` needs the field `{name}` of `{section}`; add it, for example `{name}: {example}`"
+        ),
     )
 }
 

@@ -129,9 +129,7 @@ pub fn wrong_dimension(
     Diagnostic::new(
         Code::WrongDimension,
         at,
-        format!(
-            "`{field}`: {given} is {got}, but {wanted} is expected; {right}{square}"
-        ),
+        format!("`{field}`: {given} is {got}, but {wanted} is expected; {right}{square}"),
     )
 }
 

@@ -114,7 +114,10 @@ pub(super) fn check(
     };
     let mut parts = first.parts.clone();
     parts.push(stated_part);
-    for claim in failing.iter().filter(|claim| claim.parts[0].field != first.parts[0].field) {
+    for claim in failing
+        .iter()
+        .filter(|claim| claim.parts[0].field != first.parts[0].field)
+    {
         parts.extend(&claim.parts);
     }
     let fitting: Vec<(String, String)> = fitting
@@ -240,7 +243,10 @@ fn other_readings(stated: &Emf) -> impl Iterator<Item = Reading> + Clone {
         _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
     };
     let taken = stated.reading;
-    readings.iter().copied().filter(move |reading| *reading != taken)
+    readings
+        .iter()
+        .copied()
+        .filter(move |reading| *reading != taken)
 }
 
 /// Other readings of the constant that is taken: its other bases, the other shape, and two of them
@@ -267,8 +273,7 @@ fn others<'a>(
     // A voltage from peak to peak was halved.
     let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
     let as_words = |reading| format!("`{}` as `{}`", part.field, words(&stated.given, reading));
-    let is_of_peak =
-        |reading: &Reading| matches!(reading, Reading::PhasePeak | Reading::LinePeak);
+    let is_of_peak = |reading: &Reading| matches!(reading, Reading::PhasePeak | Reading::LinePeak);
     let different = other_readings(stated).filter(|reading| !is_double || is_of_peak(reading));
     let whole = is_double.then(|| Other {
         change: format!("`{}` as `{}`", part.field, stated.reading.words()),

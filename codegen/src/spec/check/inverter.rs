@@ -423,7 +423,11 @@ fn read_gains(
     for name in SHUNT {
         if reader.field(name).is_none() {
             let (at, example) = (&shunt.location, schema::field(name).example());
-            errors.push(catalogue::needed_field(at, &shunt.name, ["inverter", name, example]));
+            errors.push(catalogue::needed_field(
+                at,
+                &shunt.name,
+                ["inverter", name, example],
+            ));
         }
     }
     let [ohm, volt] = ["shunt", "adc_reference"].map(|name| reader.plain_quantity(errors, name));

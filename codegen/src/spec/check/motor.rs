@@ -241,7 +241,8 @@ fn read_rated_current<'a>(
             let forms = [
                 (
                     "peak",
-                    "of the phase current, or what two phases carry in block commutation".to_owned(),
+                    "of the phase current, or what two phases carry in block commutation"
+                        .to_owned(),
                 ),
                 (
                     "rms",

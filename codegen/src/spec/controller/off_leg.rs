@@ -32,7 +32,13 @@ pub(super) fn read_off_leg(
         && let Value::Word(_) = field.value
     {
         let why = "these candidates turn no leg off";
-        refuse(reader, "off_leg", ["candidates", "three_phase"], why, errors);
+        refuse(
+            reader,
+            "off_leg",
+            ["candidates", "three_phase"],
+            why,
+            errors,
+        );
     }
     model
 }

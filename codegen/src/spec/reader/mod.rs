@@ -151,8 +151,7 @@ impl<'a> Reader<'a> {
     pub fn require_any_of(&self, errors: &mut Collector, names: &[&str]) {
         if names.iter().all(|name| self.may_lack(name)) {
             let rules = names.iter().map(|name| self.field_rule(name));
-            let fields: Vec<(&str, String)> =
-                rules.map(|rule| (rule.name, rule.form())).collect();
+            let fields: Vec<(&str, String)> = rules.map(|rule| (rule.name, rule.form())).collect();
             errors.push(catalogue::missing_alternative(&self.at, self.name, &fields));
         }
     }

@@ -70,7 +70,8 @@ impl Failure {
 
     /// What takes the place of a result; none where the result is on stdout already.
     pub fn without_result(&self) -> Option<ErrorAlone> {
-        let error = self.to_string();
+        let text = self.to_string();
+        let error = text.strip_prefix("error: ").unwrap_or(&text).to_owned();
         (!matches!(self, Self::Check(_))).then_some(ErrorAlone { error })
     }
 

@@ -1,11 +1,11 @@
-//! Progress on stderr, when it is a terminal.
+//! Progress on stderr: a bar on a terminal, else a line for each long part.
 
 use hexagen_lab::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
-/// A progress bar for work of the laboratory, removed when dropped; drawn only if stderr is a
-/// terminal.
+/// A progress bar for work of the laboratory, removed when dropped; without a terminal each part is said as it
+/// begins.
 pub struct Bar(ProgressBar);
 
 impl Default for Bar {
@@ -24,6 +24,9 @@ impl Progress for Bar {
         self.0.set_length(units);
         self.0.set_message(what);
         self.0.reset();
+        if self.0.is_hidden() {
+            super::note(&format!("{what} …"));
+        }
     }
 
     fn advance(&self, units: u64) {

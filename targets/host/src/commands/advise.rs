@@ -2,6 +2,7 @@
 
 use crate::cli::{Bar, Failure, print_json, print_table, print_text};
 use clap::Args;
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::advise::{Advice, DEVIATING_AT, OWN, Point, SPEEDS, Tried, Worst, advise};
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Column, Table};
@@ -35,11 +36,29 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     print_table(&table(&advice))?;
     let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
     print_text(&format!(
-        "Rated torque at {speeds} % of rated speed, the worst of them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3,\n\
-         k_b x 1.1 and the bus 15 % low, each alone. Copper loss and switching at rated speed.\n\
-         Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core that is named or assumed."
+        "Torque: of the rated {} (`check` and `report` say it of what `max_current` allows), at {speeds} % of rated speed, the worst of\n\
+         them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3, k_b x 1.1 and the bus 15 % low, each alone. Copper loss and\n\
+         switching at rated speed. Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core\n\
+         that is named or assumed.",
+        engineering(advice.rated_torque_nm, "Nm"),
     ))?;
+    for line in refusals(&advice) {
+        print_text(&line)?;
+    }
     print_text(&verdict(&advice))
+}
+
+/// The reasons of refused variants, each once.
+fn refusals(advice: &Advice) -> Vec<String> {
+    let reasons = advice.tried.iter().filter_map(|tried| {
+        let line = tried.refused.as_ref()?.lines().next()?;
+        let start = line.find("error[").unwrap_or(0);
+        Some(line[start..].to_owned())
+    });
+    let mut reasons: Vec<String> = reasons.collect();
+    reasons.sort();
+    reasons.dedup();
+    reasons
 }
 
 fn verdict(advice: &Advice) -> String {

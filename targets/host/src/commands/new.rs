@@ -389,7 +389,9 @@ fn names(line: &Line) -> String {
 /// A value without the quotes that it has in a file.
 fn unquoted(value: &str) -> &str {
     let value = value.trim();
-    let inner = value.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+    let inner = value
+        .strip_prefix('"')
+        .and_then(|rest| rest.strip_suffix('"'));
     inner.unwrap_or(value)
 }
 

@@ -8,6 +8,7 @@ use crate::cli::{
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::spec::Reference;
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
 };
@@ -230,7 +231,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.run.json {
         print_json(&outcome)?;
     } else {
-        print_table(&outcome)?;
+        print_table(&outcome, drive.spec.controller.common().reference)?;
     }
     Failure::of_trip(outcome.tripped)
 }
@@ -274,7 +275,10 @@ fn beyond_drive(
             significant(made, 4)
         ));
     }
-    (is_motoring && demand.abs() > within * BEYOND).then(|| {
+    // Against the field it holds torque beyond that.
+    let is_held = drive.spec.controller.common().field_weakening
+        && made.is_some_and(|made| made / demand >= CUT);
+    (is_motoring && !is_held && demand.abs() > within * BEYOND).then(|| {
         format!(
             "{} Nm at {rpm} rpm: the bus of {} drives the whole current only up to {} Nm there, beyond which it is cut; `hexagen limit {}` prints up to which speed the torque lasts",
             significant(demand, 4),
@@ -285,7 +289,7 @@ fn beyond_drive(
     })
 }
 
-fn print_table(outcome: &Outcome) -> Result<(), Failure> {
+fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
     let engine = outcome
         .ran
         .engine
@@ -302,8 +306,8 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         outcome.ran.controller,
         outcome.ran.model.text(),
     ))?;
-    if let Some(trip) = outcome.tripped {
-        return print_text(&format!("{trip}; it has no figures of merit"));
+    if outcome.tripped.is_some() {
+        return print_text("It tripped, so that it has no figures of merit.");
     }
     if let Some(speed) = outcome.speed {
         let of = speed.set_rpm.map_or("free shaft".to_owned(), |set_rpm| {
@@ -321,7 +325,10 @@ fn print_table(outcome: &Outcome) -> Result<(), Failure> {
         ))?;
     }
     let mut table = Table::listed(["figure of merit"], ["value", "unit"]);
-    for (name, value, unit) in outcome.figures.rows() {
+    let figures = &outcome.figures;
+    let of_shape = figures.quasi_square_rows().into_iter();
+    let of_shape = of_shape.filter(|_| reference == Reference::QuasiSquare);
+    for (name, value, unit) in figures.rows().into_iter().chain(of_shape) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
     cli::print_table(&table)

@@ -165,7 +165,7 @@ pub fn prose(text: &str) -> Markup {
                         (part) @if part.ends_with(',') { wbr; }
                     }
                 }
-                Span::Strong(text) => strong { (text) }
+                Span::Strong(text) => strong { (prose(text)) }
                 Span::Subscript(text) => sub { (text) }
             }
         }

@@ -127,8 +127,8 @@ pub fn figures_of_merit(trace: &Trace, current: f64, threshold: f64) -> FiguresO
 }
 
 impl FiguresOfMerit {
-    /// Names, values and units of figures of merit, in the order of their keys.
-    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 16] {
+    /// Names, values and units of figures of merit that any current has.
+    pub fn rows(&self) -> [(&'static str, Option<f64>, &'static str); 14] {
         [
             ("mean torque", self.mean_torque_nm, "Nm"),
             ("torque ripple, peak to peak", self.ripple_pp_pct, "%"),
@@ -142,6 +142,14 @@ impl FiguresOfMerit {
             ("current distortion", self.thd_pct, "%"),
             ("phase current, rms", self.current_rms_a, "A"),
             ("bus current, mean", self.bus_current_a, "A"),
+            ("switching per device", self.switching_hz, "Hz"),
+            ("saturated periods", self.saturated_pct, "%"),
+        ]
+    }
+
+    /// The same of those that compare with a quasi-square current.
+    pub fn quasi_square_rows(&self) -> [(&'static str, Option<f64>, &'static str); 2] {
+        [
             (
                 "distance from quasi-square currents, rms",
                 self.tracking_rms_a,
@@ -152,8 +160,6 @@ impl FiguresOfMerit {
                 self.commutation_us,
                 "us",
             ),
-            ("switching per device", self.switching_hz, "Hz"),
-            ("saturated periods", self.saturated_pct, "%"),
         ]
     }
 

@@ -44,8 +44,8 @@ impl Plan {
         let mut notes = Vec::new();
         let planned = rows_of(&own.spec.inverter);
         let mut rows = plan(&motor, planned, [is_paper, false], &mut notes)?;
-        notes.extend(rows.iter().filter_map(limited));
         rows.insert(0, of_file(&own));
+        notes.extend(rows.iter().filter_map(limited));
         Ok(Self {
             given: given.to_owned(),
             on_board,
@@ -293,8 +293,7 @@ fn plan(
 
 /// What a board without an edge timer has not.
 const NO_TIMER: &str = "Every row sees Hall edges at samples alone, half a period late on the mean: the motor file has no \
-     `hall_timer_clock`. With a timer that captures the edges (`hall_timer_clock`) \
-     angles are finer, and the ripple at speed is less.";
+     `hall_timer_clock`, so that no row is repeated with captured edges.";
 
 /// A diagnostic without its variant and column.
 fn without_place(diagnostic: &str) -> String {

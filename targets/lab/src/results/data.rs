@@ -12,7 +12,7 @@ use crate::judgement::Judgement;
 use crate::robustness::Robustness;
 use crate::stability::Stability;
 use hexagen_codegen::interface::FormatEntry;
-use hexagen_codegen::spec::{InverterSpec, MotorSpec};
+use hexagen_codegen::spec::{InverterSpec, MotorSpec, Reference};
 use hexagen_codegen::timing::StepTime;
 
 /// Contents of one page.
@@ -84,7 +84,7 @@ pub struct Verification {
 }
 
 /// One controller variant: its runs, records, formats and texts.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Variant {
     /// Short name for legends: "PDCC three_phase, nearest".
     pub label: String,
@@ -101,6 +101,10 @@ pub struct Variant {
     pub torque_speed: Vec<(f64, f64)>,
     /// Torque of the measurement in newton metres, if the set-point limit is below the demand.
     pub reach: Option<f64>,
+    /// Shape of the current reference.
+    pub reference: Reference,
+    /// Set-point of the measurement, ampere: the amplitude of a quasi-square reference.
+    pub set_point: f64,
     /// Fixed point beside the ideal model on the same ADC and Hall words.
     pub same_words: Vec<SameWords>,
     /// Largest and RMS error of fixed-point signals against ideal ones.

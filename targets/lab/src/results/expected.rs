@@ -184,10 +184,17 @@ pub fn own_row() -> DesignRow {
     }
 }
 
-/// The rows of a drive: those of the design document, and where sensors in the low legs cannot see a leg
+/// The rows of a drive: those of the design document, the default PI controller, and where sensors in the low legs cannot see a leg
 /// that is off, whole vectors of three legs in place of those that turn legs off.
 pub fn rows_of(inverter: &InverterSpec) -> Vec<DesignRow> {
     let mut rows = design_table();
+    rows.push(DesignRow {
+        label: "PI-PWM, default options",
+        variant: "pi-pwm:hall_capture=timer",
+        timer: Expected::default(),
+        sampled: None,
+        is_plotted: false,
+    });
     if !matches!(inverter.current_sensing, CurrentSensing::LowSide(_)) {
         return rows;
     }

@@ -135,6 +135,8 @@ impl Planned {
             records: records.filter(|_| self.row.is_plotted).collect(),
             torque_speed,
             reach: self.reach(),
+            reference: drive.spec.controller.common().reference,
+            set_point: drive.set_point(drive.demand()).current,
             same_words,
             signal_errors,
             stability: stability::checked(drive)?,

@@ -5,8 +5,8 @@ mod session;
 
 use lsp_types::{Code, Diagnostic, Location, Message};
 use session::Session;
-use std::path::{Path, PathBuf};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// A user's crate.
 const SOURCE: &str = "#![no_std]

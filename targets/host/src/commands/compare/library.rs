@@ -52,7 +52,9 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
     print_text(&format!(
         "Deadbeat voltage of {LAW} with 16-bit words, one step from the same state, 20 and 75 % of rated speed: signal over error in the \
          formats chosen by the generator, and in one saturating 16-bit format in SI units with {} fraction bits, the most that holds bus \
-         voltages, currents and coefficients of all these motors. Better by {:.1} dB on average.",
+         voltages, currents and coefficients of all these motors.\n\
+         Words of 16 bits: formats of each motor's own are {:.1} dB nearer to floating point, on average, than one format for all.\n\
+         Words of 32 bits: compared for one motor, `hexagen compare MOTOR`.",
         library.uniform_frac_bits, library.better_by_db
     ))
 }

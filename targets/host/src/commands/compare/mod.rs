@@ -9,6 +9,7 @@ use crate::cli::{
 };
 use clap::Args;
 use hexagen_lab::accuracy::{Row, compare};
+use hexagen_lab::engine::SelectedMotor;
 use hexagen_lab::report::robustness_blocks;
 use hexagen_lab::robustness::{Robustness, csv, robustness};
 use serde::Serialize;
@@ -66,7 +67,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         print_json(&Comparison { motor, rows: &rows })?;
     } else {
-        print::rows(&rows, matches!(selection, Selection::One(_)))?;
+        let own = SelectedMotor::find(motor, &options.plant.options())?.prepare(None)?;
+        let own = own.spec.controller.kind();
+        print::rows(&rows, own, matches!(selection, Selection::One(_)))?;
     }
     within_bounds(&rows)
 }

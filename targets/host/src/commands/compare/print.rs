@@ -6,11 +6,11 @@ use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
 use std::cmp::Reverse;
 
-/// Prints the rows, with all figures of merit for a single controller.
+/// Prints the rows, with all figures of merit for a single controller. `own`: the motor file's kind of controller.
 ///
 /// # Errors
 /// As [`print_text`].
-pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
+pub fn rows(rows: &[Row], own: &str, with_figures: bool) -> Result<(), Failure> {
     print_table(&accuracy_table(rows))?;
     for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
         print_text(reason)?;
@@ -27,7 +27,7 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
     print_table(&step_table(rows))?;
     if !with_figures {
         print_text("Every figure of merit: --controller with one variant, or --json.\n")?;
-        return print_text(&closing(rows));
+        return print_text(&closing(rows, own));
     }
     for row in rows {
         let Some(accuracy) = &row.accuracy else {
@@ -50,15 +50,25 @@ pub fn rows(rows: &[Row], with_figures: bool) -> Result<(), Failure> {
         "\nideal: with the ADC words and the state of the fixed-point drive; alone: in its own closed loop. NO: apart by \
          more than 0.5 %, or 0.05 percentage points; a word length suffices up to four times that, which no motor shows.\n",
     )?;
-    print_text(&closing(rows))
+    print_text(&closing(rows, own))
 }
 
-/// A sentence for each word length, widest first.
-fn closing(rows: &[Row]) -> String {
+/// A sentence for each word length, widest first: of the motor file's kind of controller, then of the others.
+fn closing(rows: &[Row], own: &str) -> String {
+    let is_own = |row: &&Row| row.controller.split(':').next() == Some(own);
+    let (of_file, others): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(is_own);
+    let groups = [
+        (format!("{own}, the motor file's controller"), of_file),
+        ("Other controllers".to_owned(), others),
+    ];
     let mut words: Vec<u32> = rows.iter().map(|row| row.word).collect();
     words.sort_unstable_by_key(|word| Reverse(*word));
     words.dedup();
-    let sentences = words.into_iter().map(|word| of_word(rows, word));
+    let sentences = groups.iter().filter(|(_, rows)| !rows.is_empty());
+    let sentences = sentences.flat_map(|(whose, rows)| {
+        let sentences = words.iter().map(|&word| of_word(rows, word));
+        sentences.map(move |sentence| format!("{whose}: {sentence}"))
+    });
     sentences.collect::<Vec<_>>().join("\n")
 }
 
@@ -66,7 +76,7 @@ fn closing(rows: &[Row]) -> String {
 const SUFFICIENT: f64 = 4.0;
 
 /// How far the drives of a word length are from floating point, at most.
-fn of_word(rows: &[Row], word: u32) -> String {
+fn of_word(rows: &[&Row], word: u32) -> String {
     let rows = rows.iter().filter(|row| row.word == word);
     let compared = rows.filter_map(|row| Some((&row.controller, row.accuracy.as_ref()?)));
     let compared: Vec<_> = compared.collect();
@@ -79,7 +89,7 @@ fn of_word(rows: &[Row], word: u32) -> String {
     let furthest = furthest
         .max_by(|(_, one, _), (_, other, _)| one.of_allowance.total_cmp(&other.of_allowance));
     let Some(apart) = apart.max() else {
-        return format!("With words of {word} bits nothing could be compared.");
+        return format!("with words of {word} bits nothing could be compared.");
     };
     let step = match apart {
         0 => "every compare value of a step is that of floating point".to_owned(),
@@ -94,7 +104,7 @@ fn of_word(rows: &[Row], word: u32) -> String {
         trips => format!("; {trips} runs trip and are not compared"),
     };
     let Some((controller, figure, rpm)) = furthest else {
-        return format!("With words of {word} bits {step}{trips}.");
+        return format!("with words of {word} bits {step}{trips}.");
     };
     let most = format!(
         "in closed loop the figure that changes most, {}, changes by {} ({controller} at {rpm:.0} rpm)",
@@ -102,9 +112,9 @@ fn of_word(rows: &[Row], word: u32) -> String {
         figure.text(),
     );
     if figure.of_allowance <= SUFFICIENT {
-        format!("Words of {word} bits suffice: {step}, and {most}{trips}.")
+        format!("words of {word} bits suffice: {step}, and {most}{trips}.")
     } else {
-        format!("Words of {word} bits show: {most}, although {step}{trips}.")
+        format!("words of {word} bits show: {most}, although {step}{trips}.")
     }
 }
 

@@ -4,10 +4,10 @@
 use super::plotted;
 use super::waves::current_at;
 use crate::report::plot::{
-    ANGLE, Axis, Columns, Series, Stroke, columns_between, ideal_phase, torque_range,
+    ANGLE, Axis, Columns, Series, Stroke, columns_between, reference_phase, torque_range,
 };
 use crate::report::{AXIS, Block, DEMAND, Figure, IDEAL, PHASES, Plot, variant};
-use crate::results::{Record, Results};
+use crate::results::{Record, Results, Variant};
 use crate::text::{TorqueScale, number};
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ pub fn blocks(data: &Results) -> Vec<Block> {
         .own
         .as_ref()
         .and_then(|own| data.variants.get(own.variant));
-    let Some(record) = own.and_then(|own| own.records.last()) else {
+    let Some((own, record)) = own.and_then(|own| Some((own, own.records.last()?))) else {
         return Vec::new();
     };
     let note = "Drag over a plot to zoom, or spread two fingers on a touch screen; double-click or double-tap to see all of it again; a \
@@ -42,8 +42,8 @@ pub fn blocks(data: &Results) -> Vec<Block> {
         Block::Figures {
             columns: 2,
             figures: vec![
-                Figure::new(None, "Phase currents", currents(data, record)),
-                Figure::new(None, "Torque", torque(data, record)),
+                Figure::new(None, "Phase currents", currents(data, own, record)),
+                Figure::new(None, "Torque", torque(data, own, record)),
             ],
         },
         Block::Note(note.to_owned()),
@@ -64,20 +64,19 @@ fn window(description: String, y: Axis) -> Plot {
     plot
 }
 
-fn currents(data: &Results, record: &Record) -> Plot {
+fn currents(data: &Results, own: &Variant, record: &Record) -> Plot {
     let trace = &record.trace;
     let phases = [0, 1, 2]
         .map(|phase| columns_between(trace, &WINDOW, COLUMNS, |k| current_at(trace, phase, k)));
     let all = phases.iter().flat_map(|of| of.most.iter().chain(&of.least));
-    let most = all.fold(1.1 * data.current.abs(), |most, i| most.max(i.abs()));
+    let most = all.fold(1.1 * own.set_point.abs(), |most, i| most.max(i.abs()));
     let y = Axis::new("phase current in A", &(-most..most), 8);
     let description =
         "Phase currents of the motor file's controller in one sixth of an electrical turn";
     let mut plot = window(description.to_owned(), y);
     for phase in 0..3 {
-        // Its lines are level: clamped ones end at the window's edge.
-        let ideal = ideal_phase(data.current, phase).into_iter();
-        let ideal = ideal.map(|(x, y)| (x.clamp(WINDOW.start, WINDOW.end), y));
+        let reference = (own.reference, own.set_point);
+        let ideal = reference_phase(reference, data.motor.emf_shape, phase, &WINDOW);
         plot.line(ideal, Stroke::solid(IDEAL, 3.0));
     }
     for (phase, columns) in phases.into_iter().enumerate() {
@@ -93,9 +92,9 @@ fn currents(data: &Results, record: &Record) -> Plot {
 
 /// Torque of every recorded variant at the record's speed; all but the own one are switched off at
 /// first, and the axis is that of the own one.
-fn torque(data: &Results, record: &Record) -> Plot {
+fn torque(data: &Results, drive: &Variant, record: &Record) -> Plot {
     let scale = TorqueScale::of(data.torque);
-    let demand = scale.per_nm * data.torque;
+    let demand = scale.per_nm * drive.reach.unwrap_or(data.torque);
     let own = data.own.as_ref().map(|own| own.variant);
     let of = |record: &Record| {
         columns_between(&record.trace, &WINDOW, COLUMNS, |k| {

@@ -148,7 +148,7 @@ fn inverter(data: &Results) -> Vec<(&'static str, String)> {
                 quantity(half_range, "A")
             ),
         ),
-        ("One count", quantity(inverter.adc_gain, "A")),
+        ("One count", quantity(inverter.adc_gain.abs(), "A")),
         ("Trip level", quantity(inverter.trip_current, "A")),
     ];
     board.chain(rows).collect()

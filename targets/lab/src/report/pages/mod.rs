@@ -122,8 +122,8 @@ fn plotted(data: &Results) -> impl Iterator<Item = (usize, &Variant)> {
 /// What tells the rotor's position.
 fn sensor_name(capture: Capture) -> &'static str {
     match capture {
-        Capture::Sampled => "Hall edges sampled",
-        Capture::Timer => "Hall edges timer",
+        Capture::Sampled => "Hall edges at samples",
+        Capture::Timer => "Hall edges captured by a timer",
         Capture::Angle => "angle sensor",
     }
 }

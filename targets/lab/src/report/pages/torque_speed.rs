@@ -30,7 +30,7 @@ pub fn blocks(data: &Results) -> Vec<Block> {
         limit_rpm: limit_rpm(of),
     });
     let plot = torque_speed(&TorqueSpeed {
-        torque: scale.per_nm * data.torque,
+        torque: scale.per_nm * demand(data),
         unit: scale.unit,
         rated_rpm: data.motor.rated_speed * 60.0 / TAU,
         curves: curves.collect(),
@@ -63,6 +63,15 @@ pub fn blocks(data: &Results) -> Vec<Block> {
             figures: vec![Figure::new(None, "", plot)],
         },
     ]
+}
+
+/// The torque that the own controller is asked for.
+fn demand(data: &Results) -> f64 {
+    let own = data
+        .own
+        .as_ref()
+        .and_then(|own| data.variants.get(own.variant));
+    own.and_then(|own| own.reach).unwrap_or(data.torque)
 }
 
 /// The bounds by name, in the plot's unit.

@@ -2,13 +2,19 @@
 
 use super::{as_line, phase_keys, plotted, switches};
 use crate::closed_loop::Trace;
-use crate::report::plot::{Columns, Wave, columns, ideal_phase, torque_range, trajectory, wave};
+use crate::report::plot::{
+    Columns, Wave, columns, reference_phase, torque_range, trajectory, wave,
+};
 use crate::report::{Block, Color, DEMAND, Figure, IDEAL, Key, PHASES, Plot, Sign, variant};
 use crate::results::Results;
 use crate::text::{TorqueScale, number};
+use std::ops::Range;
 
 /// Columns of a plot over one turn: one for each pixel or two; half of the page's bytes are theirs.
 const COLUMNS: usize = 400;
+
+/// The plotted turn, in degrees.
+const TURN: Range<f64> = -30.0..330.0;
 
 /// A plotted record.
 pub struct Panel<'a> {
@@ -20,6 +26,10 @@ pub struct Panel<'a> {
     pub of: String,
     /// Caption.
     pub caption: String,
+    /// Demanded torque, Nm.
+    pub demand: f64,
+    /// Curves of the current that is demanded, of each phase that is shown.
+    pub ideal: Vec<Vec<(f64, f64)>>,
     /// The record.
     pub trace: &'a Trace,
     /// Why there is no record.
@@ -46,7 +56,6 @@ pub fn current_figures<'a>(
     amplitude: f64,
     (what, title): (&str, &str),
     signals: impl Fn(&Panel<'a>) -> Vec<(String, Color, Columns)>,
-    ideal: &[Vec<(f64, f64)>],
 ) -> Vec<Figure> {
     let signals: Vec<_> = panels.iter().map(signals).collect();
     let most = signals
@@ -61,7 +70,7 @@ pub fn current_figures<'a>(
                 title: title.to_owned(),
                 range: -most..most,
                 signals,
-                ideal: ideal.to_vec(),
+                ideal: panel.ideal.clone(),
                 demand: None,
             })
         })
@@ -83,10 +92,9 @@ pub fn current_at(trace: &Trace, phase: usize, bin: usize) -> f64 {
     }
 }
 
-/// Figures of torque, all with the same axis.
-pub fn torque_figures(panels: &[Panel<'_>], demand: f64) -> Vec<Figure> {
-    let scale = TorqueScale::of(demand);
-    let demand = scale.per_nm * demand;
+/// Figures of torque, all with the same axis, in the unit that suits the torque `rated`.
+pub fn torque_figures(panels: &[Panel<'_>], rated: f64) -> Vec<Figure> {
+    let scale = TorqueScale::of(rated);
     let torques: Vec<Columns> = panels
         .iter()
         .map(|panel| {
@@ -99,7 +107,7 @@ pub fn torque_figures(panels: &[Panel<'_>], demand: f64) -> Vec<Figure> {
         .iter()
         .zip(&torques)
         .filter(|(panel, _)| panel.nothing.is_none());
-    let range = torque_range(demand, shown.map(|(_, columns)| columns));
+    let range = torque_range(scale.per_nm * rated, shown.map(|(_, columns)| columns));
     let figures = panels.iter().zip(torques).map(|(panel, torque)| {
         panel.figure(|| {
             wave(Wave {
@@ -108,7 +116,7 @@ pub fn torque_figures(panels: &[Panel<'_>], demand: f64) -> Vec<Figure> {
                 range: range.clone(),
                 signals: vec![("torque".to_owned(), panel.color, torque)],
                 ideal: Vec::new(),
-                demand: Some(demand),
+                demand: Some(scale.per_nm * panel.demand),
             })
         })
     });
@@ -144,11 +152,17 @@ fn panels<'a>(data: &'a Results, separator: &str) -> Vec<Panel<'a>> {
     });
     let panels = records.map(|(index, of, record)| {
         let (label, rpm) = (&of.label, number(record.rpm, 0));
+        let reference = |phase| {
+            let asked = (of.reference, of.set_point);
+            reference_phase(asked, data.motor.emf_shape, phase, &TURN)
+        };
         Panel {
             variant: Some(index),
             color: variant(index),
             of: format!("{label} at {rpm} rpm"),
             caption: format!("{label}{separator}**{rpm}\u{a0}rpm**"),
+            demand: of.reach.unwrap_or(data.torque),
+            ideal: (0..3).map(reference).collect(),
             trace: &record.trace,
             nothing: None,
         }
@@ -171,7 +185,7 @@ pub fn demand_key() -> Key {
     Sign::Line(DEMAND, 1.5, (6.0, 4.0)).means("demand")
 }
 
-/// Phase currents over one turn, against the ideal quasi-square wave.
+/// Phase currents over one turn, against the demanded ones.
 pub fn currents(data: &Results) -> Vec<Block> {
     let panels = panels(data, ", ");
     if panels.is_empty() {
@@ -186,10 +200,9 @@ pub fn currents(data: &Results) -> Vec<Block> {
             })
             .collect()
     };
-    let ideal = [0, 1, 2].map(|phase| ideal_phase(data.current, phase));
     let names = ("Phase currents", "phase current in A");
     let mut keys = phase_keys(["phase a", "phase b", "phase c"]);
-    keys.extend([ripple_key(PHASES[0]), ideal_key("ideal quasi-square wave")]);
+    keys.extend([ripple_key(PHASES[0]), ideal_key("demanded current")]);
     let note = "Lines are means over one control period. Sectors S1 to S6 are those of the true rotor angle; the conducting pair \
                 changes at their boundaries.";
     vec![
@@ -198,7 +211,7 @@ pub fn currents(data: &Results) -> Vec<Block> {
         Block::Note(note.to_owned()),
         Block::Figures {
             columns: 2,
-            figures: current_figures(&panels, data.current, names, signals, &ideal),
+            figures: current_figures(&panels, data.current, names, signals),
         },
     ]
 }

@@ -4,6 +4,7 @@ use super::super::palette::{AXIS, Color, DEMAND, IDEAL};
 use super::window::{Columns, FIRST_DEG};
 use super::{Axis, Plot, Point, Series, Stroke};
 use crate::closed_loop::quasi_square;
+use hexagen_codegen::spec::{EmfShape, Reference, proportional_current};
 use std::ops::Range;
 
 /// Signals to plot over the electrical angle.
@@ -112,6 +113,39 @@ pub fn ideal_phase(current: f64, phase: usize) -> Vec<Point> {
             [(from, value), (from + 60.0, value)]
         })
         .collect()
+}
+
+/// The reference of a phase's current at a set-point, ampere, over a part of the plotted turn in degrees.
+pub fn reference_phase(
+    (reference, set_point): (Reference, f64),
+    shape: EmfShape,
+    phase: usize,
+    part: &Range<f64>,
+) -> Vec<Point> {
+    /// Points of a curve.
+    const POINTS: u32 = 180;
+    match reference {
+        Reference::QuasiSquare => {
+            // Its lines are level: clamped ones end at the edge.
+            let corners = ideal_phase(set_point, phase).into_iter();
+            let corners = corners.map(|(x, y)| (x.clamp(part.start, part.end), y));
+            corners.collect()
+        }
+        Reference::Proportional => {
+            let ratio = shape.torque_factor(reference);
+            let shift = 120.0 * phase as f64;
+            let at = |point: u32| {
+                let share = f64::from(point) / f64::from(POINTS);
+                let degrees = part.start + share * (part.end - part.start);
+                let theta = (degrees - shift).to_radians();
+                (
+                    degrees,
+                    set_point * proportional_current(shape, ratio, theta),
+                )
+            };
+            (0..=POINTS).map(at).collect()
+        }
+    }
 }
 
 /// A range that contains the demand and every signal, with a margin.

@@ -44,6 +44,8 @@ fn panels(data: &Reproduction, speed: usize) -> (Vec<Panel<'_>>, Vec<&Point>) {
                 color: color(reading),
                 of: format!("{name}, {} reading, at {rpm} rpm", reading.name()),
                 caption: format!("{}, **{}**", lettered(method), reading.name()),
+                demand: data.torque,
+                ideal: vec![ideal_phase(data.current, 0)],
                 trace: &point.trace,
                 nothing: point.trip.as_ref().map(ToString::to_string),
             };
@@ -117,14 +119,13 @@ pub fn currents(data: &Reproduction, speed: usize) -> Vec<Block> {
         vec![("phase a".to_owned(), panel.color, current)]
     };
     let names = ("Current of phase a", "current of phase a in A");
-    let ideal = [ideal_phase(data.current, 0)];
     let more = [ripple_key(variant(0)), ideal_key("ideal quasi-square wave")];
     let ideal_bar = "ideal quasi-square wave: 100 % divided by the order";
     vec![
         legend(line, more),
         Block::Figures {
             columns: 2,
-            figures: current_figures(&panels, data.current, names, signal, &ideal),
+            figures: current_figures(&panels, data.current, names, signal),
         },
         Block::Heading("Spectra".to_owned()),
         legend(field, [Sign::line(INK, 2.0).means(ideal_bar)]),
