@@ -122,6 +122,8 @@ pub struct Interface {
     pub residual: Option<Watch>,
     /// Watch of the speed; with an `over_speed` only.
     pub over_speed: Option<Watch>,
+    /// Names of the state words of the learnt displacements of Hall edges; with `hall_learning` only.
+    pub hall_shifts: Option<[&'static str; 3]>,
     /// Name of the state word that holds the stated over the learnt torque constant; with `torque_learning` only.
     pub torque_ratio: Option<&'static str>,
     /// Limits of samples, and start-up.

@@ -90,6 +90,19 @@ int32_t hexagen_torque_constant_ratio(int32_t ratio)
     return inverse > 0 ? INT32_C(2) * ((INT32_C(1) << 30) / inverse) : 0;
 }
 
+/** An angle of 2^32 a turn in degrees with 16 fraction bits. */
+static int32_t degrees_of(int32_t angle)
+{
+    return hexagen_mul_round(INT32_C(360), angle, 16);
+}
+
+void hexagen_hall_offsets(int32_t first, int32_t second, int32_t all, int32_t degrees[3])
+{
+    degrees[0] = degrees_of(first + all);
+    degrees[1] = degrees_of(second + all);
+    degrees[2] = degrees_of(all - first - second);
+}
+
 int32_t hexagen_whole(int32_t number)
 {
     if (number > INT32_C(32767)) {

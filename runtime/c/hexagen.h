@@ -446,6 +446,12 @@ static inline int32_t hexagen_shared(const int32_t *word)
 /** Learnt over stated torque constant, with 16 fraction bits, of the inverse ratio with 28. */
 int32_t hexagen_torque_constant_ratio(int32_t ratio);
 
+/**
+ * Displacements of three sensors in degrees with 16 fraction bits, from those of the first and the second and of all,
+ * 2^32 a turn; that of the third is minus the sum of the first two.
+ */
+void hexagen_hall_offsets(int32_t first, int32_t second, int32_t all, int32_t degrees[3]);
+
 /** Thousandths as a number with 16 fraction bits, rounded to the nearest; saturates. */
 int32_t hexagen_thousandths(int32_t number);
 

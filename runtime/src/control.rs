@@ -95,6 +95,10 @@ pub trait Control: Sized + 'static {
     /// that field.
     const IS_TOO_FAST: Option<fn(&Self::State) -> bool> = None;
 
+    /// Reads from the law's state how far Hall edges stand from their places, 2^32 a turn: those at which sectors 1 and 4,
+    /// and 2 and 5, begin, and what all have in common. The macro sets it with `hall_learning: on`.
+    const HALL_SHIFTS: Option<fn(&Self::State) -> [Word; 3]> = None;
+
     /// Reads from the law's state the stated over the learnt torque constant, 28 fraction bits. The macro sets it with
     /// `torque_learning: on`.
     const TORQUE_RATIO: Option<fn(&Self::State) -> Word> = None;

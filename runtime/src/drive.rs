@@ -1,6 +1,6 @@
 //! A drive: controller, supervisor and set-point, whole or split into two halves.
 
-use crate::arith::Word;
+use crate::arith::{Word, mul_round};
 use crate::bus::Bus;
 use crate::set_point::debug;
 use crate::trip::Trip;
@@ -10,6 +10,7 @@ use crate::{
 };
 use core::fmt;
 use core::ops::Deref;
+use fixed::types::I16F16;
 
 /// A drive with the controller `C`, emitted by `hexagen::controller!`.
 ///
@@ -318,6 +319,19 @@ impl<C: Control> ControlLoop<'_, C> {
             self.core.supervisor.status_bits(),
             self.set_point.words.bus.is_stale(),
         )
+    }
+
+    /// How far the edges of the three Hall sensors stand from `hall_angles`, electrical degrees: those at which sectors 1
+    /// and 4, 2 and 5, 3 and 6 begin. 0 before anything is learnt, behind a reset, and without `hall_learning: on`.
+    #[must_use]
+    pub fn hall_offsets(&self) -> [I16F16; 3] {
+        let [first, second, all] =
+            C::HALL_SHIFTS.map_or([Word(0); 3], |shifts| shifts(&self.core.law));
+        [first, second, -(first + second)].map(|own| {
+            // 360 degrees of 16 fraction bits are 2^32.
+            let degrees = mul_round(Word(360), own + all, 16);
+            I16F16::from_bits(degrees.0)
+        })
     }
 
     fn publish(&self) {

@@ -15,6 +15,9 @@ use super::rotor::SIXTH;
 use crate::ir::{Expr, Flag, Interval, Memory, Named as _, Phases, named, pick};
 use std::f64::consts::PI;
 
+/// State words of the learnt displacements: of the edges at which sectors 1 and 4, and 2 and 5, begin, and of all edges.
+pub const HALL_SHIFTS: [&str; 3] = ["shift_1", "shift_2", "shift_all"];
+
 /// Limit of the displacement of the first and of the second edge, and of what one sector tells: 15 degrees. The third
 /// is minus their sum.
 const MOST: i64 = SIXTH / 4;
@@ -105,9 +108,10 @@ impl<'b> HallLearning<'b> {
             );
             l.b.memory(name, 0, Interval::symmetric(MOST), &doc)
         };
-        let shifts = [shift("shift_1", "1 and 4"), shift("shift_2", "2 and 5")];
+        let [first, second, all] = HALL_SHIFTS;
+        let shifts = [shift(first, "1 and 4"), shift(second, "2 and 5")];
         let doc = "Learnt displacement of all Hall edges, 2^32 a turn.";
-        let offset = l.b.memory("shift_all", 0, Interval::symmetric(MOST), doc);
+        let offset = l.b.memory(all, 0, Interval::symmetric(MOST), doc);
         let doc = "Learnt displacement of the Hall edge at which the sector begins, 2^32 a turn.";
         let begin =
             l.b.memory("sector_shift", 0, Interval::symmetric(4 * MOST), doc);

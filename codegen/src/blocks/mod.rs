@@ -33,6 +33,7 @@ pub use emf::{
     proportional_reference, quasi_square_reference,
 };
 pub use fade::{Allowed, BusFade};
+pub use hall_learning::HALL_SHIFTS;
 pub use limit::{Hexagon, Limited, Priority};
 pub use measure::{Hall, Sample, find_sector, sample, sector_of, sector_word, third_current};
 pub use modulate::{

@@ -207,7 +207,7 @@ fn a_board_of_the_builder_replaces_what_the_motor_file_says() {
     assert!(text.contains("TIMER_PERIOD: u16 = 4250;"), "72 MHz still");
     assert!(
         refusal("no-board", |b| b.motor("front/hub.toml").board("vesc4"))
-            .contains("vesc4:1:1: error[HX0112]")
+            .contains("argument `vesc4`: error[HX0112]")
     );
     assert!(
         refusal("early-board", |b| b.board("vesc-4").motor("front/hub.toml"))

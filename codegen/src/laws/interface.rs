@@ -5,7 +5,7 @@ use super::accuracy::accuracy_notes;
 use super::constants::{constants, ratios};
 use super::current_loop::{LoopDesign, RESIDUAL_COUNT};
 use super::operation;
-use crate::blocks::{OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale, TORQUE_RATIO};
+use crate::blocks::{HALL_SHIFTS, OVER_SPEED_COUNT, OVER_SPEED_EDGES, Scale, TORQUE_RATIO};
 use crate::diagnostics::{engineering, frequency, percent, rpm};
 use crate::interface::{
     AngleSensor, Interface, Limits, OptionEntry, PublicConstant, SensedPhases, Sensor, Sensors,
@@ -57,6 +57,7 @@ pub fn interface(
             word: OVER_SPEED_COUNT,
             most: OVER_SPEED_EDGES,
         }),
+        hall_shifts: (spec.controller.common().learning.halls).then_some(HALL_SHIFTS),
         torque_ratio: (spec.controller.common().learning.torque).then_some(TORQUE_RATIO),
         limits: limits(spec, scaled.scale),
         units: units(spec, scaled.scale),

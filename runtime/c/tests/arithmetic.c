@@ -73,6 +73,14 @@ static int32_t natural(void)
 }
 
 /* Compares a primitive with its expected value. */
+/** One of the displacements. */
+static int32_t hexagen_hall_offset(int32_t first, int32_t second, int32_t all, size_t sensor)
+{
+    int32_t degrees[3];
+    hexagen_hall_offsets(first, second, all, degrees);
+    return degrees[sensor];
+}
+
 #define EXPECT(primitive, expected)                                                          \
     do {                                                                                     \
         const wide is = (hexagen_##primitive), should = (expected);                          \
@@ -156,6 +164,14 @@ int main(void)
             const wide made = hexagen_thousandths(w);
             /* To the nearest, within the precision of a 32-bit coefficient. */
             EXPECT(thousandths(w), (size(made * 1000 - limited * 65536) <= 508) ? made : made + 1);
+        }
+        {
+            const int32_t first = w / 4, second = x / 8, all = y / 16;
+            const wide places[3] = {(wide)first + all, (wide)second + all,
+                                    (wide)all - first - second};
+            const size_t sensor = bits() % 3U;
+            EXPECT(hall_offset(first, second, all, sensor),
+                over(360 * places[sensor] + power(15), power(16)));
         }
         EXPECT(whole(w), least(greatest(w * power(16), INT32_MIN), INT32_MAX));
         {

@@ -40,6 +40,9 @@ const HELD: f64 = 99.0;
 /// Fewest ADC counts of the rated current for a smooth current.
 const COUNTS: f64 = 200.0;
 
+/// Least part of the bus that a rating takes; below it the EMF constant or the speed is likely wrong.
+const LEAST_OF_BUS: f64 = 0.2;
+
 /// Part of the control period from which on a step leaves too little of it for anything else, percent.
 const FULL: f64 = 90.0;
 
@@ -225,6 +228,14 @@ impl Judgement {
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
+        }
+        let bus = drive.spec.inverter.v_bus;
+        if self.rating_v < LEAST_OF_BUS * bus {
+            buts.push(format!(
+                "the rating takes only {} of the bus of {}: check EMF constant and speed",
+                engineering(self.rating_v, "V"),
+                engineering(bus, "V")
+            ));
         }
         buts.extend(longest.flatten());
         if !self.warnings.is_empty() {

@@ -143,6 +143,8 @@ impl Drive<'_> {
             methods.extend(self.other_unit(*set));
         }
         methods.extend(self.commands());
+        let shifts = self.interface.hall_shifts;
+        methods.extend(shifts.map(|words| self.hall_offsets(words)));
         methods
     }
 
@@ -511,6 +513,27 @@ impl Drive<'_> {
             body: lines(&[&format!(
                 "return hexagen_torque_constant_ratio(hexagen_shared(&drive->state.{word}));"
             )]),
+        }
+    }
+
+    /// The function that writes the learnt displacements of the Hall sensors.
+    fn hall_offsets(&self, words: [&str; 3]) -> Method {
+        let words = words.map(|word| format!("hexagen_shared(&drive->state.{word})"));
+        Method {
+            doc: doc(&[
+                "How far the edges of the three Hall sensors stand from `hall_angles`, electrical degrees with 16 fraction bits: those at which sectors 1 and 4, 2 and 5, 3 and 6 begin. 0 before anything is learnt and behind a reset. Between two Hall edges they belong together.",
+            ]),
+            head: format!(
+                "void {}(const {} *drive, int32_t degrees[3])",
+                self.names.public("hall_offsets"),
+                self.names.prefix
+            ),
+            body: lines(&[
+                &format!("const int32_t first = {};", words[0]),
+                &format!("const int32_t second = {};", words[1]),
+                &format!("const int32_t all = {};", words[2]),
+                "hexagen_hall_offsets(first, second, all, degrees);",
+            ]),
         }
     }
 

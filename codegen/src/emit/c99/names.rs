@@ -109,10 +109,11 @@ const RESERVED: [&str; 25] = [
 ];
 
 /// Functions that every header declares with the drive's prefix, besides the setters.
-const FUNCTIONS: [&str; 12] = [
+const FUNCTIONS: [&str; 13] = [
     "brake",
     "calibrate",
     "coast",
+    "hall_offsets",
     "init",
     "precharge",
     "reset",

@@ -63,6 +63,7 @@ impl Types<'_> {
             formats,
             residual,
             over_speed,
+            hall_shifts,
             torque_ratio,
             limits,
             units,
@@ -94,6 +95,13 @@ impl Types<'_> {
         };
         let residual = watch(quote!(HAS_LOST_CURRENTS), *residual);
         let over_speed = watch(quote!(IS_TOO_FAST), *over_speed);
+        let hall_shifts = hall_shifts.map(|words| {
+            let words = words.map(snake);
+            quote! {
+                const HALL_SHIFTS: Option<fn(&State) -> [Word; 3]> =
+                    Some(|state| [#(state.#words),*]);
+            }
+        });
         let torque_ratio = torque_ratio.map(|word| {
             let word = snake(word);
             quote! {
@@ -160,6 +168,7 @@ impl Types<'_> {
                 #told_words
                 #residual
                 #over_speed
+                #hall_shifts
                 #torque_ratio
 
                 #current

@@ -342,9 +342,10 @@ fn push_forms(
         .map(|reading| form(given, reading, is_double, shape))
         .collect();
     // Of a trace between two terminals.
-    if line && amplitude.is_none() && given.dimension == Some(Dimension::EmfConstant) {
+    if !phase && amplitude.is_none() && given.dimension == Some(Dimension::EmfConstant) {
         let halved = self::amplitude(given.clone());
-        forms.insert(1, form(&halved, LinePeak, true, shape));
+        let behind_peaks = if line { 1 } else { 2 };
+        forms.insert(behind_peaks, form(&halved, LinePeak, true, shape));
     }
     let part = &given.part;
     errors.push(catalogue::missing_basis(

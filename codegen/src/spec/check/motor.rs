@@ -161,8 +161,10 @@ fn read_winding_value(
             None
         }
         [.., last] => {
+            let is_other = |basis: &&Basis| !matches!(basis, Basis::LineToLine | Basis::PerPhase);
+            let wrong = given.basis.iter().find(is_other).unwrap_or(last).word();
             let remedy = "write either `per_phase` or `line_to_line`";
-            errors.push(catalogue::wrong_basis(at, name, text, last.word(), remedy));
+            errors.push(catalogue::wrong_basis(at, name, text, wrong, remedy));
             None
         }
     }

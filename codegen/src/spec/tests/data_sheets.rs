@@ -464,7 +464,9 @@ fn a_kv_rating_is_enough() {
     near(motor.emf_constant, 30.0 / PI / 16.0 / 2.0);
     // What a meter shows is no peak.
     for shape in ["sine", "trapezoid"] {
-        let text = text.replace(" peak", "").replace("trapezoid", shape);
+        let text = text
+            .replace("rpm/V peak", "rpm/V")
+            .replace("trapezoid", shape);
         let parsed = parse_toml(&newcomer(&text, 36, 30), "hub.toml");
         let errors = parsed.and_then(|ast| check(&ast)).expect_err(shape);
         let codes: Vec<Code> = errors.as_slice().iter().map(|error| error.code).collect();

@@ -188,13 +188,13 @@ fn errors_of_a_variant_point_into_it() {
     let errors = apply_variant(&mut ast, "pdcc:advance=1,word").expect_err("is malformed");
     assert_eq!(
         errors.to_string(),
-        "pdcc:advance=1,word:1:16: error[HX0405]: cannot read `word` of the controller variant; write `name:key=value,key=value`, for example `pdcc:modulation=pair,advance=1.5`"
+        "argument `pdcc:advance=1,word`, character 16: error[HX0405]: cannot read `word` of the controller variant; write `name:key=value,key=value`, for example `pdcc:modulation=pair,advance=1.5`"
     );
     apply_variant(&mut ast, "pdcc:advance=1,word=24").expect("parses");
     let errors = check(&ast).expect_err("has no 24-bit words");
     assert_eq!(
         errors.to_string(),
-        "pdcc:advance=1,word=24:1:21: error[HX0210]: `word`: 24 is not possible; give `16` or `32`"
+        "argument `pdcc:advance=1,word=24`, character 21: error[HX0210]: `word`: 24 is not possible; give `16` or `32`"
     );
 }
 

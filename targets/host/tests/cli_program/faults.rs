@@ -122,7 +122,7 @@ fn wrong_input_is_told() {
         ),
         (
             &["faults", PAPER, "--controller", "pdcc:advance=9"],
-            &["pdcc:advance=9:1:14"],
+            &["argument `pdcc:advance=9`, character 14"],
         ),
         (&["faults", PAPER, "--scale-l", "1e-9"], &["out of range"]),
     ] {

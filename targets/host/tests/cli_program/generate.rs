@@ -160,9 +160,9 @@ fn a_warning_goes_to_stderr_and_the_drive_is_generated() {
         let run = run([command, PAPER].iter().chain(&variant));
         assert_eq!(run.code, 0, "{command}: {}", run.stderr);
         assert!(
-            run.stderr
-                .contains("phcc:table=printed:1:12: warning[HX0601]: `table`: ")
-                && run.stderr.contains("use `derived`"),
+            run.stderr.contains(
+                "argument `phcc:table=printed`, character 12: warning[HX0601]: `table`: "
+            ) && run.stderr.contains("use `derived`"),
             "{command}: {}",
             run.stderr
         );

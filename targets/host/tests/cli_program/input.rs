@@ -28,15 +28,21 @@ fn a_bad_variant_is_told_with_its_column() {
     for (variant, texts) in [
         (
             "pdcc:modulation=bogus",
-            ["pdcc:modulation=bogus:1:17: error[HX0207]", "bogus"],
+            [
+                "argument `pdcc:modulation=bogus`, character 17: error[HX0207]",
+                "bogus",
+            ],
         ),
         (
             "pdcc:colour=red",
             ["pdcc:colour=red:1:6: error[HX", "colour"],
         ),
         ("pdcc:advance", ["pdcc:advance:1:6: error[HX", "advance"]),
-        ("pdcc:advance=9", ["pdcc:advance=9:1:14: error[HX", "9"]),
-        ("nonsense", ["nonsense:1:1: error[HX", "nonsense"]),
+        (
+            "pdcc:advance=9",
+            ["argument `pdcc:advance=9`, character 14: error[HX", "9"],
+        ),
+        ("nonsense", ["argument `nonsense`: error[HX", "nonsense"]),
     ] {
         for command in ["simulate", "limit", "generate", "verify", "compare"] {
             let mut arguments = vec![command, PAPER, "--controller", variant];

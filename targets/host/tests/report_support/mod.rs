@@ -6,7 +6,7 @@ use hexagen::{LegState, Legs, Sample};
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
-use hexagen_codegen::spec::{Spec, apply_variant, check, parse_toml};
+use hexagen_codegen::spec::{Reference, Spec, apply_variant, check, parse_toml};
 
 use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
@@ -253,6 +253,8 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
         records,
         torque_speed: curve,
         reach: None,
+        reference: Reference::QuasiSquare,
+        set_point: options.current,
         same_words,
         signal_errors: vec![SignalError {
             signal: "duty".to_owned(),

@@ -1,0 +1,69 @@
+//! What firmware reads of the learnt Hall edges.
+
+use fixed::types::I16F16;
+use hexagen::{Drive, Sample};
+
+hexagen::controller! {
+    /// At 600 rpm an electrical turn takes 500 periods of 50 ticks.
+    pub Learning {
+        motor: {
+            pole_pairs: 4,
+            resistance: 135 mohm per_phase,
+            inductance: 0.22 mH per_phase,
+            winding: star,
+            back_emf: 0.1648 V/(rad/s) line_to_line peak,
+            emf_shape: sinusoidal,
+            rated_current: 20 A peak,
+            rated_speed: 2000 rpm,
+        },
+        inverter: {
+            bus_voltage: 48 V,
+            f_pwm: 20 kHz,
+            timer_clock: 72 MHz,
+            adc_bits: 12,
+            adc_range: 40 A,
+            current_sensing: in_phase,
+            hall_timer_clock: 1 MHz,
+        },
+        controller: pdcc { hall_learning: on },
+    }
+}
+
+/// Codes of sectors 1 to 6.
+const CODES: [u8; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
+
+/// Periods of sectors 1 to 6 of 500, and their ticks.
+const SECTORS: [u16; 6] = [90, 83, 77, 90, 83, 77];
+const TICKS: u16 = 50;
+
+/// So many electrical turns without a current.
+fn turn(drive: &mut Drive<Learning>, turns: usize) {
+    for sector in (0..6).cycle().take(6 * turns) {
+        for period in 0..SECTORS[sector] {
+            let sample = Sample::with_hall([2048; 2], CODES[sector]);
+            drive.step(&sample.hall_ticks(TICKS * period + TICKS / 2));
+        }
+    }
+}
+
+/// Displacements in degrees against that of the edge at which sectors 3 and 6 begin.
+fn apart(offsets: [I16F16; 3]) -> [f64; 2] {
+    let [first, second, third] = offsets.map(f64::from);
+    [first - third, second - third]
+}
+
+#[test]
+fn firmware_reads_how_the_edges_stand_until_a_reset() {
+    let mut drive = Drive::<Learning>::new();
+    assert_eq!(drive.split().1.hall_offsets(), [I16F16::ZERO; 3]);
+    turn(&mut drive, 40);
+    // Sectors 1 and 4 last 64.8 degrees, 2 and 5 59.8, 3 and 6 55.4: the edge at which the second begins stands 4.8
+    // degrees beyond its place, and that at which the third begins 4.6, if the first is in its own.
+    let found = apart(drive.split().1.hall_offsets());
+    let expected = [-4.56, 0.24];
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!((found - expected).abs() < 0.3, "{found} for {expected}");
+    }
+    drive.reset();
+    assert_eq!(drive.split().1.hall_offsets(), [I16F16::ZERO; 3]);
+}
