@@ -253,8 +253,12 @@ fn variant(label: &str, row: &str, options: Options, with_texts: bool) -> Varian
         records,
         torque_speed: curve,
         reach: None,
-        reference: Reference::QuasiSquare,
-        set_point: options.current,
+        reference: if options.proportional {
+            Reference::Proportional
+        } else {
+            Reference::QuasiSquare
+        },
+        set_point: CURRENT,
         same_words,
         signal_errors: vec![SignalError {
             signal: "duty".to_owned(),
