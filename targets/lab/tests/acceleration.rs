@@ -25,9 +25,6 @@ const TO: f64 = 0.8;
 /// Fewest electrical turns of an average.
 const FEWEST: f64 = 0.5;
 
-/// Motors whose torque the bus ends.
-const AT_BUS: [&str; 1] = ["anaheim-bly341s"];
-
 /// Mean torque over the rated one, and the electrical turns that it lasts.
 fn torque(drive: &Prepared, sign: f64) -> (f64, f64) {
     let spec = &drive.spec;
@@ -74,8 +71,7 @@ fn the_torque_lasts_in_fast_acceleration() {
                 let name = motor.name;
                 let text = format!("{name} {sensor} {sign}: {share:.4} in {turns:.1} turns");
                 println!("{text}");
-                let is_right = share >= LEAST || AT_BUS.contains(&motor.name);
-                (turns > FEWEST).then(|| (!is_right).then_some(text))
+                (turns > FEWEST).then(|| (share < LEAST).then_some(text))
             };
             let runs = [(&drive, "Halls"), (&encoder, "encoder")];
             let runs = runs

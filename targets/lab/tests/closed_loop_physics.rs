@@ -42,6 +42,7 @@ const CALM: &[Field] = &[
 
 const SINE: &[Field] = &[
     ("motor", "emf_shape", "sinusoidal"),
+    ("motor", "rated_current", "20 A peak"),
     ("motor", "rated_torque", ""),
 ];
 

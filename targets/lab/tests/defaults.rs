@@ -21,8 +21,7 @@ use std::path::Path;
 type Limited = (&'static str, u32, Limit);
 
 /// Points of the library at which bus or control period limits the drive. Each run begins at the demanded torque.
-const LIBRARY: [Limited; 3] = [
-    ("anaheim-bly341s", 100, Limit::BusVoltage),
+const LIBRARY: [Limited; 2] = [
     ("br2804-1700kv", 100, Limit::ControlPeriod),
     ("velineon-3500", 100, Limit::ControlPeriod),
 ];

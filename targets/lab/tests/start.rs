@@ -246,8 +246,7 @@ const SHARES: [(f64, bool); 5] = [
 ];
 
 /// Speeds beyond which the bus does not hold the rated current: the EMF is as large as it.
-const BEYOND_THE_BUS: [&str; 3] = [
-    "anaheim-bly341s pdcc, bus Fixed, trip None at 3300 rpm, -1",
+const BEYOND_THE_BUS: [&str; 2] = [
     "velineon-3500 pdcc, bus Fixed, trip None at 37513 rpm, 1",
     "velineon-3500 pdcc, bus Fixed, trip None at -37513 rpm, 1",
 ];

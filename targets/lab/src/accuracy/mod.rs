@@ -194,10 +194,9 @@ pub fn differences(
     ideal: &FiguresOfMerit,
     alone: &FiguresOfMerit,
 ) -> Vec<FigureDifference> {
-    let rows = FiguresOfMerit::rows;
+    let rows = |of: &FiguresOfMerit| of.rows().into_iter().chain(of.quasi_square_rows());
     rows(fixed)
-        .into_iter()
-        .zip(rows(ideal).into_iter().zip(rows(alone)))
+        .zip(rows(ideal).zip(rows(alone)))
         .map(
             |((figure, fixed, unit), ((_, ideal, _), (_, ideal_alone, _)))| {
                 let of_allowance = share_of_allowance(fixed, ideal, unit == "%");
