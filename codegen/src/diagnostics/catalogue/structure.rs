@@ -71,9 +71,15 @@ pub fn assumption(at: &Location, field: &str, values: &[String]) -> Diagnostic {
 
 /// A field that does not exist in its section.
 pub fn unknown_field(at: &Location, section: &str, name: &str, known: &[&str]) -> Diagnostic {
+    /// More names than a reader looks through.
+    const MANY: usize = 16;
     let mut advice = did_you_mean(name, known);
     if advice.is_empty() {
-        advice = format!("; it takes {}", list(known, "and"));
+        advice = if known.len() > MANY {
+            "; `hexagen::specification` in the documentation lists its fields".to_owned()
+        } else {
+            format!("; it takes {}", list(known, "and"))
+        };
     }
     Diagnostic::new(
         Code::UnknownField,

@@ -50,7 +50,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let plan = Plan::of(motor, options.board.as_deref())?;
     // An unwritable folder is reported before the long run.
     render::prepare_folder(&folder)?;
-    let (data, checked) = plan.run(&Bar::default())?;
+    let (data, checked) = plan.run(&Bar::of_long_work())?;
     let page = results_page(&data);
     let path = render::write(&page, &folder)?;
     if *json {

@@ -94,7 +94,7 @@ function decoded(steps, [from, to]) {
 // A value with the digits that its axis can tell apart; the name of the nearest tick, where ticks
 // have names.
 function digits(value, { range: [from, to], log, ticks }) {
-  if (value == null) return "";
+  if (value == null) return "\u2013";
   if (log) return String(Number((10 ** value).toPrecision(2)));
   if (ticks) return named(value, ticks);
   const places = Math.min(9, Math.max(0, 3 - Math.floor(Math.log10(Math.abs(to - from)))));
@@ -424,10 +424,7 @@ function readout(u, plot) {
   line.textContent = toldOf(plot, value(u.cursor.left, "x"), value(u.cursor.top, "y"));
 }
 
-const toldOf = ({ x, y }, ...at) =>
-  at.some((value) => value === undefined || value === null)
-    ? "Point at the plot to read its values."
-    : `${x.title}: ${digits(at[0], x)}, ${y.title}: ${digits(at[1], y)}`;
+const toldOf = ({ x, y }, ...at) => `${x.title}: ${digits(at[0], x)}, ${y.title}: ${digits(at[1], y)}`;
 
 // A line for what is told of the pointer's place, without one yet.
 function lineOf(plot) {

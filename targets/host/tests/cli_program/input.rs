@@ -35,9 +35,15 @@ fn a_bad_variant_is_told_with_its_column() {
         ),
         (
             "pdcc:colour=red",
-            ["pdcc:colour=red:1:6: error[HX", "colour"],
+            [
+                "argument `pdcc:colour=red`, character 6: error[HX",
+                "colour",
+            ],
         ),
-        ("pdcc:advance", ["pdcc:advance:1:6: error[HX", "advance"]),
+        (
+            "pdcc:advance",
+            ["argument `pdcc:advance`, character 6: error[HX", "advance"],
+        ),
         (
             "pdcc:advance=9",
             ["argument `pdcc:advance=9`, character 14: error[HX", "9"],
@@ -235,7 +241,7 @@ fn options_out_of_range_or_at_odds_are_told() {
         (&["compare", PAPER, "--csv", "sheet.csv"], "--robustness"),
         (
             &["compare", PAPER, "--robustness", "--controller", "pdcc:a=1"],
-            "pdcc:a=1:1:6",
+            "argument `pdcc:a=1`, character 6",
         ),
         (&["compare", "unheard-of", "--robustness"], "unheard-of"),
         (&["verify", PAPER, "--steps", "-5"], "--steps"),

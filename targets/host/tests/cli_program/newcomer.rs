@@ -439,7 +439,7 @@ fn values_in_error_are_told_and_nothing_is_written() {
         ),
         ("colour=red", &["HX0103"]),
         ("poles", &["write FIELD=VALUE"]),
-        ("rated_speed=400", &["HX0204", "rated_speed = \"2000 rpm\""]),
+        ("rated_speed=400", &["HX0204", "give a unit such as `rpm`"]),
         ("winding=triangle", &["HX0207", "`star` or `delta`"]),
     ] {
         run(["new", name, value]).assert_bad_input(texts);

@@ -345,7 +345,7 @@ fn a_percentage_of_nothing_is_absent() {
     let said = run(["simulate", PAPER, "--rpm", "0", "--start-angle", "0.1"]);
     assert!(
         said.stdout
-            .contains("| current distortion                       |       - |"),
+            .contains("| current distortion          |       - |"),
         "{}",
         said.stdout
     );
@@ -572,7 +572,8 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
     }
     let said = run(["simulate", PAPER, "--rpm", "1500", "--scale-l", "0.1"]);
     assert_eq!(said.code, 1);
-    assert!(said.stdout.contains("the drive tripped"), "{}", said.stdout);
+    assert!(said.stdout.contains("It tripped"), "{}", said.stdout);
+    assert!(said.stderr.contains("the drive tripped"), "{}", said.stderr);
     assert!(!said.stdout.contains('|'), "{}", said.stdout);
 }
 

@@ -1,0 +1,71 @@
+//! Two disturbances at once: no default drive of the library trips or oscillates.
+
+use hexagen_lab::engine::{PlantOptions, SelectedMotor};
+use hexagen_lab::robustness::{Cell, Outcome, robustness};
+use rayon::prelude::*;
+
+/// Drives whose modulator and observer correct a wrong plant.
+const VARIANTS: [&str; 2] = ["pdcc", "pi-pwm"];
+
+/// A change of the plant of a bus voltage.
+type Change = fn(&mut PlantOptions, f64);
+
+/// First disturbances; the second is each of the robustness sheet.
+const FIRST: [(&str, Change); 10] = [
+    ("R -30 %", |plant, _| plant.scale_r = Some(0.7)),
+    ("R +30 %", |plant, _| plant.scale_r = Some(1.3)),
+    ("L -30 %", |plant, _| plant.scale_l = Some(0.7)),
+    ("L +30 %", |plant, _| plant.scale_l = Some(1.3)),
+    ("k_b -30 %", |plant, _| plant.scale_kb = Some(0.7)),
+    ("k_b +30 %", |plant, _| plant.scale_kb = Some(1.3)),
+    ("bus -10 %", |plant, bus| plant.v_bus = Some(0.9 * bus)),
+    ("dead time 1 us", |plant, _| plant.dead_time = Some(1e-6)),
+    ("Hall +5 deg", |plant, _| plant.hall_error = Some([5.0; 3])),
+    ("ADC noise", |plant, _| plant.adc_noise = Some(1.0)),
+];
+
+#[test]
+#[ignore = "takes ten minutes: `cargo xtask nightly` runs it"]
+fn no_pair_of_disturbances_diverges() {
+    let library = SelectedMotor::library(&PlantOptions::default()).expect("the library");
+    let motors: Vec<(String, f64)> = library
+        .iter()
+        .map(|motor| {
+            let drive = motor.prepare(None).expect("generates");
+            (motor.source.name.clone(), drive.spec.inverter.v_bus)
+        })
+        .collect();
+    let variants = VARIANTS.map(str::to_owned);
+    let pairs = motors.par_iter().flat_map_iter(|(motor, bus)| {
+        FIRST.into_iter().flat_map(|(first, change)| {
+            let mut plant = PlantOptions::default();
+            change(&mut plant, *bus);
+            let sheet = robustness(motor, &variants, &plant, &()).expect("runs");
+            let columns = sheet.controllers.into_iter();
+            let cells = columns.flat_map(|column| {
+                let controller = column.controller;
+                // The same one twice is none of a sheet's size.
+                let kind = |name: &str| name.split(' ').next().map(str::to_owned);
+                let others = column.cells.into_iter();
+                let others = others.filter(|cell| kind(&cell.disturbance) != kind(first));
+                let of = |cell: Cell| {
+                    let outcome = cell.figures.expect("is possible").outcome;
+                    let (second, rpm) = (cell.disturbance, cell.rpm);
+                    let what = format!("{motor} {controller}: {first} and {second}, {rpm:.0} rpm");
+                    (what, outcome)
+                };
+                others.map(of).collect::<Vec<_>>()
+            });
+            cells.collect::<Vec<_>>()
+        })
+    });
+    let pairs: Vec<(String, Outcome)> = pairs.collect();
+    println!("{} runs", pairs.len());
+    assert!(pairs.len() > 8000, "{} runs", pairs.len());
+    let diverging = pairs
+        .into_iter()
+        .filter(|(_, outcome)| *outcome != Outcome::Runs);
+    let diverging = diverging.map(|(what, outcome)| format!("{what}: {}", outcome.name()));
+    let diverging: Vec<String> = diverging.collect();
+    assert!(diverging.is_empty(), "{diverging:#?}");
+}
