@@ -12,7 +12,7 @@ inductance = "0.22 mH per_phase"
 winding = "star"
 back_emf = "0.1648 V/(rad/s) line_to_line peak"
 emf_shape = "trapezoidal"
-rated_current = "20 A"
+rated_current = "20 A peak"
 rated_speed = "1600 rpm"
 [inverter]
 bus_voltage = "48 V"

@@ -35,12 +35,12 @@ fn no_pair_of_disturbances_diverges() {
             (motor.source.name.clone(), drive.spec.inverter.v_bus)
         })
         .collect();
-    let variants = VARIANTS.map(str::to_owned);
+    let variants = &VARIANTS.map(str::to_owned);
     let pairs = motors.par_iter().flat_map_iter(|(motor, bus)| {
-        FIRST.into_iter().flat_map(|(first, change)| {
+        FIRST.into_iter().flat_map(move |(first, change)| {
             let mut plant = PlantOptions::default();
             change(&mut plant, *bus);
-            let sheet = robustness(motor, &variants, &plant, &()).expect("runs");
+            let sheet = robustness(motor, variants, &plant, &()).expect("runs");
             let columns = sheet.controllers.into_iter();
             let cells = columns.flat_map(|column| {
                 let controller = column.controller;
