@@ -98,9 +98,14 @@ static int32_t degrees_of(int32_t angle)
 
 void hexagen_hall_offsets(int32_t first, int32_t second, int32_t all, int32_t degrees[3])
 {
-    degrees[0] = degrees_of(first + all);
-    degrees[1] = degrees_of(second + all);
-    degrees[2] = degrees_of(all - first - second);
+    const int32_t third = -(first + second);
+    /* The sensor between the others is taken to be in its place. */
+    const int32_t middle =
+        hexagen_max(hexagen_min(first, second), hexagen_min(hexagen_max(first, second), third));
+    const int32_t common = all - middle;
+    degrees[0] = degrees_of(first + common);
+    degrees[1] = degrees_of(second + common);
+    degrees[2] = degrees_of(third + common);
 }
 
 int32_t hexagen_whole(int32_t number)

@@ -448,7 +448,7 @@ int32_t hexagen_torque_constant_ratio(int32_t ratio);
 
 /**
  * Displacements of three sensors in degrees with 16 fraction bits, from those of the first and the second and of all,
- * 2^32 a turn; that of the third is minus the sum of the first two.
+ * 2^32 a turn; that of the third is minus the sum of the first two, and the one between the others counts as 0.
  */
 void hexagen_hall_offsets(int32_t first, int32_t second, int32_t all, int32_t degrees[3]);
 

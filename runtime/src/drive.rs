@@ -327,9 +327,12 @@ impl<C: Control> ControlLoop<'_, C> {
     pub fn hall_offsets(&self) -> [I16F16; 3] {
         let [first, second, all] =
             C::HALL_SHIFTS.map_or([Word(0); 3], |shifts| shifts(&self.core.law));
-        [first, second, -(first + second)].map(|own| {
+        let third = -(first + second);
+        // The sensor between the others is taken to be in its place.
+        let middle = first.min(second).max(first.max(second).min(third));
+        [first, second, third].map(|own| {
             // 360 degrees of 16 fraction bits are 2^32.
-            let degrees = mul_round(Word(360), own + all, 16);
+            let degrees = mul_round(Word(360), own - middle + all, 16);
             I16F16::from_bits(degrees.0)
         })
     }

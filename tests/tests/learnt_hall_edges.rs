@@ -4,7 +4,7 @@ use fixed::types::I16F16;
 use hexagen::{Drive, Sample};
 
 hexagen::controller! {
-    /// At 600 rpm an electrical turn takes 500 periods of 50 ticks.
+    /// At 625 rpm an electrical turn takes 480 periods of 50 ticks.
     pub Learning {
         motor: {
             pole_pairs: 4,
@@ -32,9 +32,11 @@ hexagen::controller! {
 /// Codes of sectors 1 to 6.
 const CODES: [u8; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
 
-/// Periods of sectors 1 to 6 of 500, and their ticks.
-const SECTORS: [u16; 6] = [90, 83, 77, 90, 83, 77];
+/// Periods of sectors 1 to 6 of 480, and their ticks. Sectors 1 and 4 last 64.5 degrees, 2 and 5 55.5, 3 and 6 60: the
+/// sensor whose edges begin sectors 2 and 5 is 4.5 degrees late.
+const SECTORS: [u16; 6] = [86, 74, 80, 86, 74, 80];
 const TICKS: u16 = 50;
+const EXPECTED: [f64; 3] = [0.0, 4.5, 0.0];
 
 /// So many electrical turns without a current.
 fn turn(drive: &mut Drive<Learning>, turns: usize) {
@@ -46,22 +48,13 @@ fn turn(drive: &mut Drive<Learning>, turns: usize) {
     }
 }
 
-/// Displacements in degrees against that of the edge at which sectors 3 and 6 begin.
-fn apart(offsets: [I16F16; 3]) -> [f64; 2] {
-    let [first, second, third] = offsets.map(f64::from);
-    [first - third, second - third]
-}
-
 #[test]
 fn firmware_reads_how_the_edges_stand_until_a_reset() {
     let mut drive = Drive::<Learning>::new();
     assert_eq!(drive.split().1.hall_offsets(), [I16F16::ZERO; 3]);
     turn(&mut drive, 40);
-    // Sectors 1 and 4 last 64.8 degrees, 2 and 5 59.8, 3 and 6 55.4: the edge at which the second begins stands 4.8
-    // degrees beyond its place, and that at which the third begins 4.6, if the first is in its own.
-    let found = apart(drive.split().1.hall_offsets());
-    let expected = [-4.56, 0.24];
-    for (found, expected) in found.into_iter().zip(expected) {
+    let found = drive.split().1.hall_offsets().map(f64::from);
+    for (found, expected) in found.into_iter().zip(EXPECTED) {
         assert!((found - expected).abs() < 0.3, "{found} for {expected}");
     }
     drive.reset();

@@ -164,10 +164,10 @@ impl Code {
                 "Write the unit behind the number.",
             ),
             Self::MissingBasis => say(
-                "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings of R and L differ by a factor of two, those of an EMF by up to three, so none is guessed.",
+                "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings of R and L differ by a factor of two, those of an EMF by up to three, so none is guessed. The current of a sinusoidal motor is printed as peak or rms, 1.41 times apart.",
                 "resistance = \"135 mohm\"",
                 "resistance = \"135 mohm per_phase\"",
-                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`.",
+                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`. Servo motors state their current as `rms`; write `peak` for what block commutation carries, and where nothing is said.",
             ),
             Self::WrongBasis => say(
                 "The value cannot refer to what the word says.",

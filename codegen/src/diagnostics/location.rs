@@ -93,7 +93,8 @@ fn quoted(value: &str) -> String {
     }
 }
 
-/// `file:line:col`, as editors and terminals recognise it; a macro call is named `macro`, and an argument so.
+/// `file:line:col`, as editors and terminals recognise it; a macro call is named `macro`; of a command's argument,
+/// ``argument `text`, character n``.
 impl fmt::Display for Location {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -185,7 +185,7 @@ fn outside_of_board(whole: &Section, board: &Section, at: &Location) -> Option<D
     {
         return Some(catalogue::bus_limits_exchanged(low, high));
     }
-    ["bus_voltage", "over_voltage", "bus_max"]
+    ["bus_voltage", "over_voltage"]
         .into_iter()
         .find_map(|name| {
             let (given, part) = volts(whole, name)?;

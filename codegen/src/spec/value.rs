@@ -228,6 +228,9 @@ fn read_unit(
     }
     let unknown = &lexemes[..lexemes.len() - basis_at_end(lexemes).0];
     let symbol = spelt(unknown);
+    if field.name == "poles" && symbol.contains("pair") {
+        return Err(catalogue::pairs_of_poles(at, &given(unknown), digits));
+    }
     if let Some(readings) = Unit::readings(&written(unknown)) {
         return Err(catalogue::ambiguous_unit(
             at,

@@ -72,7 +72,6 @@ static int32_t natural(void)
     return (word < 0) ? -(word + 1) : word;
 }
 
-/* Compares a primitive with its expected value. */
 /** One of the displacements. */
 static int32_t hexagen_hall_offset(int32_t first, int32_t second, int32_t all, size_t sensor)
 {
@@ -81,6 +80,7 @@ static int32_t hexagen_hall_offset(int32_t first, int32_t second, int32_t all, s
     return degrees[sensor];
 }
 
+/* Compares a primitive with its expected value. */
 #define EXPECT(primitive, expected)                                                          \
     do {                                                                                     \
         const wide is = (hexagen_##primitive), should = (expected);                          \
@@ -166,12 +166,14 @@ int main(void)
             EXPECT(thousandths(w), (size(made * 1000 - limited * 65536) <= 508) ? made : made + 1);
         }
         {
-            const int32_t first = w / 4, second = x / 8, all = y / 16;
-            const wide places[3] = {(wide)first + all, (wide)second + all,
-                                    (wide)all - first - second};
+            const int32_t first = w / 24, second = x / 24, all = y / 24;
+            const wide own[3] = {first, second, -(wide)first - second};
             const size_t sensor = bits() % 3U;
+            const wide lowest = least(least(own[0], own[1]), own[2]);
+            const wide highest = greatest(greatest(own[0], own[1]), own[2]);
+            const wide middle = own[0] + own[1] + own[2] - lowest - highest;
             EXPECT(hall_offset(first, second, all, sensor),
-                over(360 * places[sensor] + power(15), power(16)));
+                over(360 * (own[sensor] - middle + all) + power(15), power(16)));
         }
         EXPECT(whole(w), least(greatest(w * power(16), INT32_MIN), INT32_MAX));
         {

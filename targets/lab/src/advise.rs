@@ -13,7 +13,7 @@ use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_
 use crate::judgement::coarse_period;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
-use hexagen_codegen::spec::{Field, OF_CORE, apply_variant};
+use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
 use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -75,6 +75,9 @@ const DEVIATIONS: [(&str, Deviate); 5] = [
     ("k_b x 1.1", |plant, _| plant.scale_kb = Some(1.1)),
     ("bus 15 % low", |plant, bus| plant.v_bus = Some(0.85 * bus)),
 ];
+
+/// The lowest bus of a run over `bus_min`, at which counts may round the wrong way.
+const ABOVE_LEAST: f64 = 1.01;
 
 /// A run.
 #[derive(Clone, Debug, Serialize)]
@@ -212,6 +215,12 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         advice.tried[k].limit_pct = limit;
     }
     advice.recommend(&mut left);
+    if advice.tried.first().is_some_and(|default| default.overruns) {
+        advice.reason.push_str(
+            "; a step of the default drive may take longer than the control period: a lower `f_pwm`, or `pwm_per_control = 2`, \
+             gives it the time",
+        );
+    }
     if advice.recommended.is_none()
         && let Some(coarse) = first.and_then(|drive| coarse_period(&drive.spec))
     {
@@ -317,6 +326,10 @@ fn try_drive(variant: &'static str, drive: &Prepared) -> Result<Tried, LabError>
     for (name, deviate) in DEVIATIONS {
         let mut plant = PlantOptions::default();
         deviate(&mut plant, drive.spec.inverter.v_bus);
+        // Below `bus_min` a drive trips, as it should.
+        if let BusSource::Measured { min, .. } = drive.spec.inverter.bus {
+            plant.v_bus = plant.v_bus.map(|bus| bus.max(ABOVE_LEAST * min));
+        }
         tried
             .deviating
             .push(run(drive, &plant, (DEVIATING_AT, Some(name)))?);

@@ -232,7 +232,7 @@ impl Judgement {
         let bus = drive.spec.inverter.v_bus;
         if self.rating_v < LEAST_OF_BUS * bus {
             buts.push(format!(
-                "the rating takes only {} of the bus of {}: check EMF constant and speed",
+                "the rating takes only {} of the bus of {}: check EMF constant and speed, or take a lower bus",
                 engineering(self.rating_v, "V"),
                 engineering(bus, "V")
             ));

@@ -265,6 +265,18 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
             )
         },
         step("pages of all motors", &pages),
+        step(
+            "pairs of disturbances",
+            &[
+                "test",
+                "--package",
+                "hexagen-lab",
+                "--test",
+                "pairs",
+                "--",
+                "--ignored",
+            ],
+        ),
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
         on_target("programs", &[]),

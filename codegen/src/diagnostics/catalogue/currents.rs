@@ -354,6 +354,18 @@ pub fn unlike_gains(gains: &Part, [first, other]: [f64; 2]) -> Diagnostic {
     )
 }
 
+/// Three sensors on fewer converters cannot be sampled at once.
+pub fn shared_converter(conversion: &Part, converters: u32) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        &conversion.location,
+        format!(
+            "`conversion_time`: {} is only of sensors that each have a converter of their own; {converters} `current_adcs` share three sensors, so give the time from one sample to the next",
+            conversion.given
+        ),
+    )
+}
+
 /// A list of `given` values where there are so many sensed phases.
 pub fn not_of_each_phase(list: &Part, phases: &Part, given: usize, wanted: usize) -> Diagnostic {
     let error = Diagnostic::new(

@@ -274,6 +274,8 @@ pub struct Contradiction<'a> {
     pub agreed: &'a [&'a Part],
     /// Readings that fit, with what follows from them.
     pub fitting: &'a [(String, String)],
+    /// What to state of the voltage that a speed refers to, a clause.
+    pub voltage: Option<&'static str>,
 }
 
 /// Rated torque, torque constant, speed constant or no-load speed against the EMF constant.
@@ -291,7 +293,12 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
         expected => expected.join(" or "),
     };
     let ratio = if of.inverse { 1.0 / of.ratio } else { of.ratio };
-    let advice = if of.fitting.is_empty() {
+    let advice = if let Some(voltage) = of.voltage {
+        voltage.to_owned()
+    } else if of.fitting.is_empty() && !(1.0 / THOUSANDFOLD..THOUSANDFOLD).contains(&ratio) {
+        "one of the two is likely a thousandfold off, so check the prefixes of their units"
+            .to_owned()
+    } else if of.fitting.is_empty() {
         "no other basis or shape fits either, so check the numbers against the data sheet"
             .to_owned()
     } else {
@@ -347,11 +354,12 @@ fn agreement(of: &Contradiction) -> String {
     if fields.len() < 2 {
         return String::new();
     }
-    format!(
-        "{} agree, so that `{}` is likely wrong; ",
-        list(&fields, "and"),
-        of.culprit.field
-    )
+    let agree = format!("{} agree", list(&fields, "and"));
+    if of.fitting.is_empty() && of.voltage.is_none() {
+        format!("{agree}, so that `{}` is likely wrong; ", of.culprit.field)
+    } else {
+        format!("{agree}; ")
+    }
 }
 
 /// Two constants that state their bases and do not agree; `ratio`: the one that is taken over the other; `changes`:
@@ -378,6 +386,9 @@ pub fn constants_apart([taken, other]: [&Part; 2], ratio: f64, changes: &[String
         &[other],
     )
 }
+
+/// Beyond it a prefix is rather wrong than a basis.
+const THOUSANDFOLD: f64 = 200.0;
 
 /// Beyond it percents are harder to read than a factor.
 const MULTIPLE: f64 = 10.0;

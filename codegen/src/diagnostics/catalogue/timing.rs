@@ -10,7 +10,7 @@ use crate::diagnostics::{
 /// `time_constant` = L/R in second.
 pub fn absurd_time_constant(likely: &Part, other: &Part, time_constant: f64) -> Diagnostic {
     let message = format!(
-        "`{}`: {} is likely a thousandfold off: with {} L/R is {}, far shorter than that of any motor; check the number and the prefix of its unit",
+        "`{}`: {} is likely a thousandfold off: with {} L/R is {}, as of no motor; check the number and the prefix of its unit",
         likely.field,
         likely.given,
         other.quoted(),

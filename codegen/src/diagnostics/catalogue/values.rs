@@ -145,6 +145,13 @@ pub fn quantity_of_other_field(
     Diagnostic::new(Code::WrongDimension, at, message)
 }
 
+/// Pole pairs where poles are asked for.
+pub fn pairs_of_poles(at: &Location, given: &str, pairs: &str) -> Diagnostic {
+    let message =
+        format!("`poles`: {given} are pairs, half of the poles; write `pole_pairs: {pairs}`");
+    Diagnostic::new(Code::UnwantedUnit, at, message)
+}
+
 /// A number without unit; `right`: what to give, a clause.
 pub fn missing_unit(at: &Location, field: &str, given: &str, right: &str) -> Diagnostic {
     Diagnostic::new(
@@ -256,7 +263,7 @@ pub fn wrong_kind(
 
 /// A value in quotes within a macro call.
 pub fn quoted(at: &Location, field: &str, given: &str) -> Diagnostic {
-    let plain = given.trim_matches('"');
+    let plain = given.replace('"', "");
     Diagnostic::new(
         Code::MalformedValue,
         at,

@@ -429,6 +429,9 @@ impl Drive<'_> {
                     .to_owned(),
             );
         }
+        if self.interface.limits.sensors.third.is_some() {
+            text.push("It has the third current's count, too (hexagen_with_third).".to_owned());
+        }
         Method {
             doc: text,
             head: format!(
@@ -521,7 +524,7 @@ impl Drive<'_> {
         let words = words.map(|word| format!("hexagen_shared(&drive->state.{word})"));
         Method {
             doc: doc(&[
-                "How far the edges of the three Hall sensors stand from `hall_angles`, electrical degrees with 16 fraction bits: those at which sectors 1 and 4, 2 and 5, 3 and 6 begin. 0 before anything is learnt and behind a reset. Between two Hall edges they belong together.",
+                "How far the edges of the three Hall sensors stand from `hall_angles`, electrical degrees with 16 fraction bits: those at which sectors 1 and 4, 2 and 5, 3 and 6 begin. 0 before anything is learnt and behind a reset. An edge may change them between two reads: call it from the interrupt that calls the step, or until two results agree.",
             ]),
             head: format!(
                 "void {}(const {} *drive, int32_t degrees[3])",

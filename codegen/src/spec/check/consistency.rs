@@ -82,7 +82,10 @@ pub(super) fn check(
         warnings.extend(mean_for_peak(stated, rest, shape, pole_pairs).or_else(apart));
         return false;
     }
-    let majority = majority(phase, &claims);
+    // An odd one must be among those that do not fit.
+    let majority = majority(phase, &claims).filter(|&constant| {
+        !fits(constant, phase) || failing.iter().any(|claim| !claim.agrees(constant))
+    });
     let is_odd = |claim: &&&Claim| majority.is_some_and(|constant| !claim.agrees(constant));
     let Some(first) = failing.iter().find(is_odd).or(failing.first()) else {
         return false;
@@ -112,6 +115,9 @@ pub(super) fn check(
             (culprit, vec![])
         }
     };
+    let is_other = |part: &&Part| part.field != culprit.field;
+    let agreed: Vec<&Part> = agreed.into_iter().filter(is_other).collect();
+    fitting.retain(|(other, _)| agreed.iter().all(|part| part.field != other.at.field));
     let mut parts = first.parts.clone();
     parts.push(stated_part);
     for claim in failing
@@ -139,6 +145,8 @@ pub(super) fn check(
         parts: &parts,
         agreed: &agreed,
         fitting: &fitting,
+        voltage: (first.parts[0].field == "no_load_speed" && motor.nominal_voltage.is_none())
+            .then_some("if the speed holds at another voltage, state that as `nominal_voltage`"),
     }));
     true
 }
@@ -162,7 +170,8 @@ fn majority(phase: f64, claims: &[Claim]) -> Option<f64> {
         }
     }
     let (constant, votes) = best;
-    (2 * votes > 1 + claims.len()).then_some(constant)
+    let all = 1 + claims.len();
+    (2 * votes > all && votes < all).then_some(constant)
 }
 
 /// Everything that is stated beside the constant that is taken.
@@ -243,10 +252,11 @@ fn other_readings(stated: &Emf) -> impl Iterator<Item = Reading> + Clone {
         _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
     };
     let taken = stated.reading;
-    readings
-        .iter()
-        .copied()
-        .filter(move |reading| *reading != taken)
+    // A voltage from peak to peak was halved: it has no root mean square.
+    let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
+    let is_peak = |reading: Reading| matches!(reading, PhasePeak | LinePeak);
+    let others = readings.iter().copied();
+    others.filter(move |reading| *reading != taken && (!is_double || is_peak(*reading)))
 }
 
 /// Other readings of the constant that is taken: its other bases, the other shape, and two of them
@@ -273,8 +283,7 @@ fn others<'a>(
     // A voltage from peak to peak was halved.
     let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
     let as_words = |reading| format!("`{}` as `{}`", part.field, words(&stated.given, reading));
-    let is_of_peak = |reading: &Reading| matches!(reading, Reading::PhasePeak | Reading::LinePeak);
-    let different = other_readings(stated).filter(|reading| !is_double || is_of_peak(reading));
+    let different = other_readings(stated);
     let whole = is_double.then(|| Other {
         change: format!("`{}` as `{}`", part.field, stated.reading.words()),
         at: part,
@@ -314,22 +323,28 @@ fn fitting<'a>(
     let factor = claim.factors[0];
     let mut candidates: Vec<(Other, f64)> = Vec::new();
     // The claim's own field may be the one that is misread.
-    let current = motor.rated_current.as_ref();
-    if claim.code == Code::TorqueContradiction
-        && let Some(current) = current.filter(|current| current.basis.is_empty())
-    {
-        let change = "`rated_current` as `rms`".to_owned();
+    let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
+    if let (Code::TorqueContradiction, Some(current)) = (claim.code, motor.rated_current.as_ref()) {
+        let (word, constant) = if current.basis.contains(&Basis::Rms) {
+            ("peak", factor / shape.rated_peak())
+        } else {
+            ("rms", factor * shape.rated_peak())
+        };
+        let change = format!("`rated_current` as `{word}`");
         let at = &current.part;
-        let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
-        let constant = Reading::PerRmsAmpere.factor(shape) * phase;
-        candidates.push((Other { change, at, phase }, constant));
+        candidates.push((Other { change, at, phase }, constant * phase));
     }
-    if claim.code == Code::TorqueConstantContradiction {
-        let at = claim.parts[0];
-        let change = "`torque_constant` as `per_rms_ampere`".to_owned();
-        let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
-        let constant = Reading::PerRmsAmpere.factor(shape) * phase;
-        candidates.push((Other { change, at, phase }, constant));
+    let claimed = |stated: &&Emf| stated.given.part.field == claim.parts[0].field;
+    for stated in motor.emf.iter().skip(1).find(claimed) {
+        for reading in other_readings(stated) {
+            let change = format!(
+                "`{}` as `{}`",
+                stated.given.part.field,
+                words(&stated.given, reading)
+            );
+            let at = &stated.given.part;
+            candidates.push((Other { change, at, phase }, reading.factor(shape) * phase));
+        }
     }
     candidates.extend(others.into_iter().map(|other| {
         let constant = factor * other.phase;

@@ -397,7 +397,14 @@ fn read_gains(
             let (at, given) = (&swing.part.location, &swing.part.given);
             errors.push(catalogue::needless_field(at, SWING, given, "shunt"));
         }
-        reader.require_one_of(errors, ["adc_range", "adc_gain"]);
+        if ["adc_range", "adc_gain"]
+            .iter()
+            .all(|name| reader.field(name).is_none())
+        {
+            reader.require_any_of(errors, &["adc_range", "adc_gain", SHUNT[0]]);
+        } else {
+            reader.require_one_of(errors, ["adc_range", "adc_gain"]);
+        }
         let range = reader.plain_quantity(errors, "adc_range");
         let stated = reader.field("adc_gain").and_then(|_| {
             sensing::of_each_phase(reader, "adc_gain", phases, errors, |one, errors| {

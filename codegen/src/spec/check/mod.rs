@@ -21,7 +21,7 @@ pub use origins::{Origin, Origins};
 
 use super::reader::Reader;
 use super::{Spec, SpecAst, schema};
-use crate::diagnostics::{Collector, Diagnostics, catalogue};
+use crate::diagnostics::{Code, Collector, Diagnostics, catalogue};
 
 /// Checks a specification and fills in every default.
 ///
@@ -61,6 +61,9 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         let reference = controller.as_ref().map(|spec| spec.common().reference);
         let context = (reference, ast.board_bus(), decay);
         relations::check_bus(&motor_reader, &motor, &inverter, context, &mut errors);
+        if decay == Some(relations::Decay::ByResistance) && !errors.has(Code::BusTooLow) {
+            relations::tell_long_period(&motor_reader, &motor, &inverter, &mut errors);
+        }
     }
     sensing_window::check(
         &inverter_reader,

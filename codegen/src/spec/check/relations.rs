@@ -26,6 +26,9 @@ const LEAST_WITH_ANGLE: f64 = 15.0;
 /// speeds up, or sensors out of place, must not skip a sector before seven edges have told the speed.
 const LEAST_WATCHED: f64 = 8.0;
 
+/// No motor's current decays so slowly, s.
+const LONGEST_TIME_CONSTANT: f64 = 0.3;
+
 /// No drive switches so fast: where only such a PWM frequency helped, resistance or inductance is wrong, hertz.
 const ABSURD_PWM: f64 = 500e3;
 
@@ -49,13 +52,29 @@ pub(super) fn check_period(
     inverter: &Inverter,
     errors: &mut Collector,
 ) -> Option<Decay> {
-    let (period, t_s) = (inverter.period.as_ref()?, inverter.t_s?);
+    let t_s = inverter.t_s?;
     let time_constant = motor.inductance? / motor.resistance?;
+    let resistance = reader.part("resistance", String::new);
+    let inductance = reader.part("inductance", String::new);
+    if time_constant > LONGEST_TIME_CONSTANT {
+        // What the bus cannot drive through the inductance at rated speed is too much of it.
+        let reactance = motor.rated_speed.as_ref().map_or(0.0, |speed| {
+            speed.si * f64::from(motor.pole_pairs.unwrap_or(1)) * motor.inductance.unwrap_or(0.0)
+        });
+        let (current, bus) = (motor.rated_current.as_ref(), inverter.v_bus.as_ref());
+        let drop = reactance * current.map_or(0.0, |given| given.si);
+        let (likely, other) = if bus.is_some_and(|bus| drop > bus.si) {
+            (inductance, resistance)
+        } else {
+            (resistance, inductance)
+        };
+        let error = catalogue::absurd_time_constant(&likely, &other, time_constant);
+        errors.push(error);
+        return Some(Decay::Absurd);
+    }
     if t_s / time_constant <= GREATEST_DECAY * (1.0 + 1e-9) {
         return Some(Decay::Short);
     }
-    let resistance = reader.part("resistance", String::new);
-    let inductance = reader.part("inductance", String::new);
     let longest = inverter.period_within(GREATEST_DECAY * time_constant);
     let f_pwm = f64::from(inverter.pwm_per_control) / longest;
     let (current, bus) = (motor.rated_current.as_ref(), inverter.v_bus.as_ref());
@@ -75,15 +94,30 @@ pub(super) fn check_period(
     if is_beyond {
         return Some(Decay::ByResistance);
     }
+    tell_long_period(reader, motor, inverter, errors);
+    Some(Decay::Long)
+}
+
+/// Reports a period that is long against L/R.
+pub(super) fn tell_long_period(
+    reader: &Reader,
+    motor: &Motor,
+    inverter: &Inverter,
+    errors: &mut Collector,
+) -> Option<()> {
+    let (period, t_s) = (inverter.period.as_ref()?, inverter.t_s?);
+    let time_constant = motor.inductance? / motor.resistance?;
+    let longest = inverter.period_within(GREATEST_DECAY * time_constant);
+    let f_pwm = f64::from(inverter.pwm_per_control) / longest;
     errors.push(catalogue::period_too_long(
         &period.part,
-        &resistance,
-        &inductance,
+        &reader.part("resistance", String::new),
+        &reader.part("inductance", String::new),
         t_s,
         time_constant,
         [longest, f_pwm],
     ));
-    Some(Decay::Long)
+    Some(())
 }
 
 /// Most of the bus that EMF and resistive drop of a rating may take: beyond it a value is rather wrong.

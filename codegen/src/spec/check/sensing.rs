@@ -106,6 +106,18 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
         return Some(CurrentSensing::InPhase);
     }
     reader.require_beside(errors, [FIELD, LOW_SIDE], ("inverter", &NEEDED));
+    if let (Some(conversion), Some(shared @ 2..)) = (conversion, converters)
+        && conversion == 0.0
+        && reader
+            .field("sensed_phases")
+            .is_some_and(|field| field.value.to_string() == "abc")
+        && shared < 3
+    {
+        errors.push(catalogue::shared_converter(
+            &reader.part("conversion_time", String::new),
+            shared,
+        ));
+    }
     Some(CurrentSensing::LowSide(SensingTimes {
         settling: settling?,
         aperture: aperture?,

@@ -31,31 +31,31 @@ fn stray_signs_are_no_part_of_a_quantity() {
     for (value, message) in [
         (
             "20 ^^**\u{b7} A",
-            "cannot read `^^**\u{b7}` in `20 ^^**\u{b7} A`; write it like `rated_current = \"20 A\"`",
+            "cannot read `^^**\u{b7}` in `20 ^^**\u{b7} A`; write it like `rated_current = \"20 A peak\"`",
         ),
         (
             "20 A ^",
-            "cannot read `^` in `20 A ^`; write it like `rated_current = \"20 A\"`",
+            "cannot read `^` in `20 A ^`; write it like `rated_current = \"20 A peak\"`",
         ),
         (
             "20 A *",
-            "cannot read `*` in `20 A *`; write it like `rated_current = \"20 A\"`",
+            "cannot read `*` in `20 A *`; write it like `rated_current = \"20 A peak\"`",
         ),
         (
             "20 * A!",
-            "cannot read `*` in `20 * A!`; write it like `rated_current = \"20 A\"`",
+            "cannot read `*` in `20 * A!`; write it like `rated_current = \"20 A peak\"`",
         ),
         (
             "20 $A",
-            "cannot read `$` in `20 $A`; write it like `rated_current = \"20 A\"`",
+            "cannot read `$` in `20 $A`; write it like `rated_current = \"20 A peak\"`",
         ),
         (
             "2__0 A",
-            "cannot read `2__0 A`; write it like `rated_current = \"20 A\"`",
+            "cannot read `2__0 A`; write it like `rated_current = \"20 A peak\"`",
         ),
         (
             "20_ A",
-            "cannot read `20_ A`; write it like `rated_current = \"20 A\"`",
+            "cannot read `20_ A`; write it like `rated_current = \"20 A peak\"`",
         ),
     ] {
         let told = changed("\"20 A peak\"", &format!("\"{value}\""));

@@ -253,7 +253,7 @@ pub struct PlantArguments {
     #[arg(long, value_name = "KGM2", value_parser = quantity::inertia, allow_hyphen_values = true)]
     pub inertia: Option<f64>,
     /// Load torque that opposes the motion
-    #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true, requires = "inertia")]
+    #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub load: Option<f64>,
     /// Initial electrical angle in rad: one run instead of three [default: 0.1, 0.117, 0.134]
     #[arg(long, value_name = "RAD", value_parser = quantity::radians, allow_hyphen_values = true)]
@@ -289,6 +289,11 @@ impl PlantArguments {
     /// # Errors
     /// An option out of range.
     pub fn plant(&self, drive: &Prepared) -> Result<PlantParams, Failure> {
+        if self.load.is_some() && self.inertia.is_none() {
+            return Err(Failure::Argument(
+                "--load: the shaft is free, and needs --inertia of rotor and load".to_owned(),
+            ));
+        }
         let plant = self.options().plant(drive);
         plant.map_err(|error| self.blame(error.into()))
     }

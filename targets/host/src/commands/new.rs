@@ -57,7 +57,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let asks = !options.json && std::io::stdin().is_terminal();
     if asks {
         // Before questions are asked in vain.
-        checked(&draft.text(), &options.file, false).map_err(refused)?;
+        checked(&draft.text(), &options.file, false).map_err(|wrong| refused(&wrong))?;
         draft.ask(&mut std::io::stdin().lock().lines(), &options.file)?;
     }
     let missing = draft.missing(&options.file);
@@ -65,7 +65,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let wrong = checked(&text, &options.file, missing.is_empty());
     // Answers are not lost: what is wrong between them is corrected in the file.
     let wrong = match wrong {
-        Err(wrong) if !asks => return Err(refused(wrong)),
+        Err(wrong) if !asks => return Err(refused(&wrong)),
         wrong => wrong.err(),
     };
     write_new(&options.file, text.as_bytes(), options.force).map_err(|error| Failure::Write {
@@ -431,9 +431,14 @@ fn errors(text: &str, file: &Path) -> Vec<Diagnostic> {
     read.err().into_iter().flatten().collect()
 }
 
-/// A failure by wrong values of which no file was made.
-fn refused(wrong: String) -> Failure {
-    LabError::Specification(wrong + "\nNothing was written.").into()
+/// A failure by wrong values of which no file was made: without places in it.
+fn refused(wrong: &str) -> Failure {
+    let lines = wrong.lines().map(|line| {
+        let start = line.find("error[").or_else(|| line.find("note: "));
+        &line[start.unwrap_or_default()..]
+    });
+    let lines: Vec<&str> = lines.chain(["Nothing was written."]).collect();
+    LabError::Specification(lines.join("\n")).into()
 }
 
 /// Whether what was given is right: what is missing, and what waits for it, is not wrong.
@@ -474,6 +479,7 @@ mod tests {
             "\"3500 rpm\"",
             "6200 rpm",
             "24 V",
+            "",
             "24 V",
             "72 MHz",
             "shunt=5 mohm",
@@ -483,6 +489,9 @@ mod tests {
             "1 us",
             "200 ns",
             "0 us",
+            "",
+            "",
+            "",
         ];
         let mut draft = Draft::of(Vec::new(), Path::new("db42.toml")).expect("nothing is wrong");
         let mut given = answers.iter().map(|answer| Ok((*answer).to_owned()));

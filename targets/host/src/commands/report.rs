@@ -77,7 +77,7 @@ fn lines(data: &Results, page: &Path) -> Vec<String> {
     let head = format!("{}: {verdict}", data.file);
     let rows = rows.into_iter().chain([page]);
     let rows = rows.map(|(name, text)| match name {
-        "best" => format!("{name:<11} {text} (--all lists them)"),
+        "furthest" => format!("{name:<11} {text} (--all lists them)"),
         _ => format!("{name:<11} {text}"),
     });
     [head]

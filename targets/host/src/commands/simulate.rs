@@ -8,7 +8,7 @@ use crate::cli::{
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::Reference;
+use hexagen_codegen::spec::{Reference, RotorSensing};
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
 };
@@ -31,8 +31,8 @@ pub struct Options {
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, required_unless_present = "speed_set")]
     pub rpm: Option<f64>,
     /// Speed set-point in rpm, with `speed_loop=on`: the run starts at --rpm or from rest, --torque is
-    /// the limit of the speed loop, the shaft has --inertia or that of the motor file, and the
-    /// measurement begins after the run-up; warns if the speed has not settled within 2 % of set-point
+    /// the limit of the speed loop, which is made for the motor file's `inertia`; the shaft has that or
+    /// --inertia, and the measurement begins after the run-up; warns if the speed has not settled within 2 % of set-point
     /// or start, whichever is faster. Without it a speed loop is left out
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
     pub speed_set: Option<f64>,
@@ -257,6 +257,14 @@ fn beyond_drive(
     if rpm.abs() > most * (1.0 + 1e-9) {
         return Some(format!(
             "--rpm {rpm}: beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor"
+        ));
+    }
+    let least = drive.spec.inverter.minimum_speed * 60.0 / TAU;
+    let has_halls = !matches!(drive.spec.inverter.rotor_sensing, RotorSensing::Angle(_));
+    if has_halls && rpm != 0.0 && rpm.abs() < least {
+        return Some(format!(
+            "--rpm {rpm}: below minimum_speed = {} rpm the angle is the middle of the sector, and the torque varies; state a lower one",
+            significant(least, 3)
         ));
     }
     let envelope = envelope_on(&drive.spec, plant);

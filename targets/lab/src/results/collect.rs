@@ -237,6 +237,7 @@ fn plan(
         };
         let made = if has_angle {
             let variant = timer.replace(",hall_capture=timer", "");
+            let variant = variant.replace(":hall_capture=timer", "");
             vec![(Capture::Angle, "", variant)]
         } else {
             let sampled = timer.replace("hall_capture=timer", "hall_capture=sampled");

@@ -101,6 +101,9 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
         let name = format!("{bits}-bit ADC, {} off", engineering(offset, "A"));
         add(&name, &|plant| {
             plant.adc_bits = Some(bits);
+            // A stated current per count would shrink the range.
+            let range = plant.adc_range.take();
+            plant.adc_range = range.or_else(|| Some(format!("{largest} A")));
             let known = known_of_sensors(plant.adc_offset.as_ref(), 0.0);
             plant.adc_offset = Some(PerSensor(
                 known.iter().map(|known| known + offset).collect(),

@@ -9,6 +9,7 @@ use crate::cli::{
 };
 use clap::Args;
 use hexagen_lab::accuracy::{Row, compare};
+use hexagen_lab::advise::DEFAULT;
 use hexagen_lab::engine::SelectedMotor;
 use hexagen_lab::report::robustness_blocks;
 use hexagen_lab::robustness::{Robustness, csv, robustness};
@@ -67,9 +68,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.json {
         print_json(&Comparison { motor, rows: &rows })?;
     } else {
-        let own = SelectedMotor::find(motor, &options.plant.options())?.prepare(None)?;
-        let own = own.spec.controller.kind();
-        print::rows(&rows, own, matches!(selection, Selection::One(_)))?;
+        match selection {
+            Selection::One(variant) => print::of_one(&rows, variant)?,
+            Selection::All => {
+                let motor = SelectedMotor::find(motor, &options.plant.options())?;
+                let own = motor.ast.controller.field("kind");
+                let own = own.map_or(DEFAULT.to_owned(), |own| own.value.to_string());
+                print::of_all(&rows, &own)?;
+            }
+        }
     }
     within_bounds(&rows)
 }

@@ -6,29 +6,30 @@ use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
 use std::cmp::Reverse;
 
-/// Prints the rows, with all figures of merit for a single controller. `own`: the motor file's kind of controller.
+/// Prints the rows of all controllers. `own`: the motor file's kind.
 ///
 /// # Errors
 /// As [`print_text`].
-pub fn rows(rows: &[Row], own: &str, with_figures: bool) -> Result<(), Failure> {
-    print_table(&accuracy_table(rows))?;
-    for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
-        print_text(reason)?;
-    }
-    print_text(
-        "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage of the current controller; phcc: the predicted error of the current times K), \
-         one step from the same state, phases a and b.\n\
-         Decisions: sector, commutation, limit, vector. Where they differ (by rounding of a tie), errors are not compared.\n\
-         Closed loop: the figure that differs most, relative to its tolerance (0.5 %, or 0.05 percentage points), same starts and ADC words. \
-         Controllers of whole vectors diverge after a tie.\n\
-         Duty: compare value minus exact duty, timer counts, without and with limiting, each with its proven bound and \
-         half a count for the rounding of the compare value.\n",
-    )?;
-    print_table(&step_table(rows))?;
-    if !with_figures {
-        print_text("Every figure of merit: --controller with one variant, or --json.\n")?;
-        return print_text(&closing(rows, own));
-    }
+pub fn of_all(rows: &[Row], own: &str) -> Result<(), Failure> {
+    steps(rows)?;
+    print_text("Every figure of merit: --controller with one variant, or --json.\n")?;
+    let is_own = |row: &&Row| row.controller.split(':').next() == Some(own);
+    let (of_kind, others): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(is_own);
+    let groups = [
+        (format!("{own}, the motor file's kind"), of_kind),
+        ("Other controllers".to_owned(), others),
+    ];
+    let groups = groups.iter().filter(|(_, rows)| !rows.is_empty());
+    let closing: Vec<String> = groups.map(|(whose, rows)| closing(whose, rows)).collect();
+    print_text(&closing.join("\n"))
+}
+
+/// Prints the rows of one variant, with all figures of merit.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn of_one(rows: &[Row], variant: &str) -> Result<(), Failure> {
+    steps(rows)?;
     for row in rows {
         let Some(accuracy) = &row.accuracy else {
             continue;
@@ -50,25 +51,35 @@ pub fn rows(rows: &[Row], own: &str, with_figures: bool) -> Result<(), Failure> 
         "\nideal: with the ADC words and the state of the fixed-point drive; alone: in its own closed loop. NO: apart by \
          more than 0.5 %, or 0.05 percentage points; a word length suffices up to four times that, which no motor shows.\n",
     )?;
-    print_text(&closing(rows, own))
+    print_text(&closing(variant, &rows.iter().collect::<Vec<_>>()))
 }
 
-/// A sentence for each word length, widest first: of the motor file's kind of controller, then of the others.
-fn closing(rows: &[Row], own: &str) -> String {
-    let is_own = |row: &&Row| row.controller.split(':').next() == Some(own);
-    let (of_file, others): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(is_own);
-    let groups = [
-        (format!("{own}, the motor file's controller"), of_file),
-        ("Other controllers".to_owned(), others),
-    ];
+/// The tables of single steps.
+fn steps(rows: &[Row]) -> Result<(), Failure> {
+    print_table(&accuracy_table(rows))?;
+    for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
+        print_text(reason)?;
+    }
+    print_text(
+        "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage of the current controller; phcc: the predicted error of the current times K), \
+         one step from the same state, phases a and b.\n\
+         Decisions: sector, commutation, limit, vector. Where they differ (by rounding of a tie), errors are not compared.\n\
+         Closed loop: the figure that differs most, relative to its tolerance (0.5 %, or 0.05 percentage points), same starts and ADC words. \
+         Controllers of whole vectors diverge after a tie.\n\
+         Duty: compare value minus exact duty, timer counts, without and with limiting, each with its proven bound and \
+         half a count for the rounding of the compare value.\n",
+    )?;
+    print_table(&step_table(rows))
+}
+
+/// A sentence for each word length, widest first.
+fn closing(whose: &str, rows: &[&Row]) -> String {
     let mut words: Vec<u32> = rows.iter().map(|row| row.word).collect();
     words.sort_unstable_by_key(|word| Reverse(*word));
     words.dedup();
-    let sentences = groups.iter().filter(|(_, rows)| !rows.is_empty());
-    let sentences = sentences.flat_map(|(whose, rows)| {
-        let sentences = words.iter().map(|&word| of_word(rows, word));
-        sentences.map(move |sentence| format!("{whose}: {sentence}"))
-    });
+    let sentences = words
+        .into_iter()
+        .map(|word| format!("{whose}: {}", of_word(rows, word)));
     sentences.collect::<Vec<_>>().join("\n")
 }
 

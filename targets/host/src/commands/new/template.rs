@@ -134,7 +134,7 @@ const MOTOR: &[Line] = &[
     )
     .asked()
     .only_with("no_load_speed", ""),
-    needed(&["inertia"], "Of the rotor and what it moves; needed for speed control.", "24 g cm2").optional(),
+    needed(&["inertia"], "Of the rotor and what it moves; needed for speed control.", "24 g cm2").asked(),
     needed(
         &["rotor"],
         "An encoder or a resolver in place of Hall sensors; then also angle_offset, angle_direction and angle_bits.",
@@ -207,11 +207,11 @@ const INVERTER: &[Line] = &[
     .only_with("current_sensing", "low_side"),
     needed(
         &["sensed_phases"],
-        "Legs with a shunt: ab, bc, ca or abc.",
+        "Legs with a shunt: ab, bc, ca or abc; ab where nothing is said.",
         "ab",
     )
-    .only_with("current_sensing", "low_side")
-    .or("ab"),
+    .asked()
+    .only_with("current_sensing", "low_side"),
     needed(
         &["v_bus"],
         "fixed, or measured: the firmware passes the bus voltage; then also bus_adc_bits and bus_adc_range,\n\
@@ -220,13 +220,13 @@ const INVERTER: &[Line] = &[
     )
     .optional(),
     needed(&["max_current"], "Largest set-point. By default rated_current; with a sinusoidal EMF up to 15 % more where rated_torque needs it.", "25 A").optional(),
-    needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").optional(),
+    needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").asked(),
     needed(
         &["hall_timer_clock"],
         "Clock of a timer that captures Hall edges, if the board has one; a slow motor needs a slower clock (HX0310).",
         "1 MHz",
     )
-    .optional(),
+    .asked(),
 ];
 
 const CONTROLLER: &[Line] = &[

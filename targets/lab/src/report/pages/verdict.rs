@@ -21,7 +21,7 @@ pub fn verdict(data: &Results) -> Option<(String, Vec<(&'static str, String)>)> 
         ("losses", losses(data, variant)),
         ("step", sentence(&own.times)),
         ("verified", verified(data)),
-        ("best", best(data, own.variant)),
+        ("furthest", furthest(data, own.variant)),
     ];
     let rows = rows.into_iter().filter(|(_, text)| !text.is_empty());
     Some((sentence_of(&own.judgement.verdict), rows.collect()))
@@ -160,7 +160,7 @@ fn verified(data: &Results) -> String {
 }
 
 /// The variant that holds the torque to the highest speed, where it is another one.
-fn best(data: &Results, own: usize) -> String {
+fn furthest(data: &Results, own: usize) -> String {
     let limit_of = |variant: &Variant| {
         let limit = variant.runs.first()?.limit.as_ref()?;
         limit.limit_pct

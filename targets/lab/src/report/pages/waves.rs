@@ -63,6 +63,8 @@ pub fn current_figures<'a>(
         .flatten()
         .flat_map(|(_, _, columns)| columns.most.iter().chain(&columns.least))
         .fold(1.1 * amplitude.abs(), |most, i| most.max(i.abs()));
+    let demanded = panels.iter().flat_map(|panel| panel.ideal.iter().flatten());
+    let most = demanded.fold(most, |most, (_, i)| most.max(1.1 * i.abs()));
     let figures = panels.iter().zip(signals).map(|(panel, signals)| {
         panel.figure(|| {
             wave(Wave {
