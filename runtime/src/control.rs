@@ -25,6 +25,9 @@ pub trait State: Send + 'static {
     fn set_word(&mut self, index: usize, value: i32);
 }
 
+/// Angles of Hall edges, 2^32 a turn.
+pub type HallShifts = [Word; 3];
+
 /// A generated current controller of one motor, inverter and control period.
 ///
 /// ```
@@ -97,7 +100,7 @@ pub trait Control: Sized + 'static {
 
     /// Reads from the law's state how far Hall edges stand from their places, 2^32 a turn: those at which sectors 1 and 4,
     /// and 2 and 5, begin, and what all have in common. The macro sets it with `hall_learning: on`.
-    const HALL_SHIFTS: Option<fn(&Self::State) -> [Word; 3]> = None;
+    const HALL_SHIFTS: Option<fn(&Self::State) -> HallShifts> = None;
 
     /// Reads from the law's state the stated over the learnt torque constant, 28 fraction bits. The macro sets it with
     /// `torque_learning: on`.

@@ -57,7 +57,7 @@ pub use bus::{Bus, FixedBus, ToldBus};
 pub use command::{Command, Intervals, LegState, Legs};
 pub use constants::pairs_from_bits;
 pub use control::{
-    BusWords, Control, MeasuredBus, Observation, SpeedLoop, State, Unit, Units, Words,
+    BusWords, Control, HallShifts, MeasuredBus, Observation, SpeedLoop, State, Unit, Units, Words,
 };
 pub use drive::{ControlLoop, Drive, DynLoop};
 pub use fixed;

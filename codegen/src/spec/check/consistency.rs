@@ -96,27 +96,12 @@ pub(super) fn check(
     // Another reading must not contradict what agrees with this one.
     fitting.retain(|(other, _)| agreeing.iter().all(|claim| claim.agrees(other.phase)));
     let stated_part = &stated.given.part;
-    let (culprit, agreed) = match majority {
-        Some(constant) => {
-            let is_stated_odd = !fits(constant, phase);
-            let agreed = claims.iter().filter(|claim| claim.agrees(constant));
-            let agreed = agreed.map(|claim| claim.parts[0]);
-            let taken = (!is_stated_odd).then_some(stated_part);
-            let culprit = if is_stated_odd {
-                stated_part
-            } else {
-                first.parts[0]
-            };
-            (culprit, taken.into_iter().chain(agreed).collect())
-        }
-        None => {
-            let fitting = fitting.first();
-            let culprit = fitting.map_or(first.parts[0], |(other, _)| other.at);
-            (culprit, vec![])
-        }
+    let (culprit, agreed) = if let Some(constant) = majority {
+        odd_one(stated_part, &claims, first, [phase, constant])
+    } else {
+        let misread = fitting.first().map(|(other, _)| other.at);
+        (misread.unwrap_or(first.parts[0]), Vec::new())
     };
-    let is_other = |part: &&Part| part.field != culprit.field;
-    let agreed: Vec<&Part> = agreed.into_iter().filter(is_other).collect();
     fitting.retain(|(other, _)| agreed.iter().all(|part| part.field != other.at.field));
     let mut parts = first.parts.clone();
     parts.push(stated_part);
@@ -151,7 +136,26 @@ pub(super) fn check(
     true
 }
 
-/// The constant that more than half of all statements agree with, if there is one.
+/// The value that most others speak against, and these; `first`: the first claim that does not fit the constant that is
+/// taken, `phase`, nor that of most statements, `constant`.
+fn odd_one<'a>(
+    stated: &'a Part,
+    claims: &[Claim<'a>],
+    first: &Claim<'a>,
+    [phase, constant]: [f64; 2],
+) -> (&'a Part, Vec<&'a Part>) {
+    let agreeing = claims.iter().filter(|claim| claim.agrees(constant));
+    let agreeing = agreeing.map(|claim| claim.parts[0]);
+    if fits(constant, phase) {
+        let culprit = first.parts[0];
+        let agreeing = agreeing.filter(|part| part.field != culprit.field);
+        (culprit, std::iter::once(stated).chain(agreeing).collect())
+    } else {
+        (stated, agreeing.collect())
+    }
+}
+
+/// The constant that more than half of all statements agree with, and not all, if there is one.
 fn majority(phase: f64, claims: &[Claim]) -> Option<f64> {
     let implied = claims.iter().flat_map(|claim| {
         let factors = claim.factors.iter();
@@ -335,7 +339,7 @@ fn fitting<'a>(
         candidates.push((Other { change, at, phase }, constant * phase));
     }
     let claimed = |stated: &&Emf| stated.given.part.field == claim.parts[0].field;
-    for stated in motor.emf.iter().skip(1).find(claimed) {
+    if let Some(stated) = motor.emf.iter().skip(1).find(claimed) {
         for reading in other_readings(stated) {
             let change = format!(
                 "`{}` as `{}`",

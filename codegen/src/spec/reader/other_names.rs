@@ -5,7 +5,8 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 13] = [
+const NAMES: [(&str, &[&str]); 14] = [
+    ("kind", &["type"]),
     (
         "poles",
         &[
@@ -13,6 +14,7 @@ const NAMES: [(&str, &[&str]); 13] = [
             "pole_number",
             "number_of_poles",
             "magnet_poles",
+            "magnets",
         ],
     ),
     (

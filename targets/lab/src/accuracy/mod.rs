@@ -175,9 +175,19 @@ pub struct FigureDifference {
 }
 
 impl FigureDifference {
-    /// The difference with its unit: points for percentages, else percent.
+    /// The difference to the ideal model on the same samples, with its unit: points for percentages, else percent.
     pub fn text(&self) -> String {
-        let both = self.fixed.zip(self.ideal);
+        self.text_against(self.ideal)
+    }
+
+    /// The difference between the two closed loops, relative to the tolerance and as [`Self::text`] says it.
+    pub fn in_closed_loop(&self) -> (f64, String) {
+        let share = share_of_allowance(self.fixed, self.ideal_alone, self.unit == "%");
+        (share, self.text_against(self.ideal_alone))
+    }
+
+    fn text_against(&self, ideal: Option<f64>) -> String {
+        let both = self.fixed.zip(ideal);
         let (value, unit) = match both.map(|(fixed, ideal)| ((fixed - ideal).abs(), ideal)) {
             None => (None, if self.unit == "%" { "points" } else { "%" }),
             Some((distance, _)) if self.unit == "%" => (Some(distance), "points"),

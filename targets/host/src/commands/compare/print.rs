@@ -93,12 +93,17 @@ fn of_word(rows: &[&Row], word: u32) -> String {
     let compared: Vec<_> = compared.collect();
     let apart = compared.iter();
     let apart = apart.map(|(_, accuracy)| accuracy.one_step.compares_apart_counts);
-    let furthest = compared.iter().filter_map(|(controller, accuracy)| {
-        let (figure, rpm) = accuracy.furthest()?;
-        Some((controller, figure, rpm))
+    let furthest = compared.iter().flat_map(|(controller, accuracy)| {
+        let loops = accuracy.closed_loop.iter();
+        loops.flat_map(move |at| {
+            let figures = at.figures.iter();
+            figures.map(move |figure| (controller, figure, at.rpm))
+        })
     });
-    let furthest = furthest
-        .max_by(|(_, one, _), (_, other, _)| one.of_allowance.total_cmp(&other.of_allowance));
+    let furthest = furthest.max_by(|(_, one, _), (_, other, _)| {
+        let [one, other] = [one, other].map(|figure| figure.in_closed_loop().0);
+        one.total_cmp(&other)
+    });
     let Some(apart) = apart.max() else {
         return format!("with words of {word} bits nothing could be compared.");
     };
@@ -117,12 +122,12 @@ fn of_word(rows: &[&Row], word: u32) -> String {
     let Some((controller, figure, rpm)) = furthest else {
         return format!("with words of {word} bits {step}{trips}.");
     };
+    let (share, change) = figure.in_closed_loop();
     let most = format!(
-        "in closed loop the figure that changes most, {}, changes by {} ({controller} at {rpm:.0} rpm)",
+        "in its own closed loop the figure that changes most, {}, changes by {change} ({controller} at {rpm:.0} rpm)",
         figure.figure,
-        figure.text(),
     );
-    if figure.of_allowance <= SUFFICIENT {
+    if share <= SUFFICIENT {
         format!("words of {word} bits suffice: {step}, and {most}{trips}.")
     } else {
         format!("words of {word} bits show: {most}, although {step}{trips}.")
