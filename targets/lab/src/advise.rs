@@ -343,8 +343,9 @@ fn run(
     plant: &PlantOptions,
     (speed_pct, deviation): (u32, Option<&'static str>),
 ) -> Result<Point, LabError> {
+    // The stated motor from every start of a measurement: some trip from one of them alone.
     let plant = PlantOptions {
-        start_angle: Some(START),
+        start_angle: deviation.map(|_| START),
         ..plant.clone()
     };
     let rpm = drive.rated_rpm() * f64::from(speed_pct) / 100.0;

@@ -37,8 +37,17 @@ const COARSE: f64 = 15.0;
 /// where the torque ends, takes 97 %.
 const HELD: f64 = 99.0;
 
+/// A speed just below the rated one, over that.
+const JUST_BELOW: f64 = 0.985;
+
+/// Torque that two runs may differ by and count as alike, percent of the demand.
+const ALIKE: f64 = 2.0;
+
 /// Fewest ADC counts of the rated current for a smooth current.
 const COUNTS: f64 = 200.0;
+
+/// Part of the inverter's voltage from which on a rating takes all of it.
+const FULL_BUS: f64 = 0.97;
 
 /// Least part of the bus that a rating takes; below it the EMF constant or the speed is likely wrong.
 const LEAST_OF_BUS: f64 = 0.2;
@@ -98,6 +107,8 @@ pub struct Judgement {
     pub greatest_torque_rpm: Option<f64>,
     /// Greatest voltage between two legs that the demanded torque takes at rated speed, volt.
     pub rating_v: f64,
+    /// Greatest voltage that the inverter makes between two legs, volt.
+    pub reach_v: f64,
     /// Speed up to which the bus drives the whole current of the demanded torque, rpm.
     pub envelope_rpm: f64,
     /// ADC counts of the rated current.
@@ -131,7 +142,7 @@ impl Judgement {
         let [slow, rated] = SPEEDS.map(|share| share * motor.rated_speed);
         let mut points = vec![
             at_speed(drive, slow, inverter.v_bus)?,
-            at_speed(drive, rated, inverter.v_bus)?,
+            at_rating(drive, rated, inverter.v_bus)?,
         ];
         if let Some(least) = drive.least_bus {
             points.push(at_speed(drive, rated, least)?);
@@ -151,6 +162,7 @@ impl Judgement {
             greatest_torque_nm: greatest,
             greatest_torque_rpm: envelope.speed(greatest).map(rpm),
             rating_v: envelope.bus_voltage(motor.rated_speed, set_point) * envelope.reach,
+            reach_v: inverter.v_bus * envelope.reach,
             envelope_rpm: rpm(envelope.speed(torque).unwrap_or(0.0)),
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
@@ -272,7 +284,9 @@ impl Judgement {
     /// What is left of the torque at a speed, and what takes the rest.
     fn left(&self, point: &Point) -> String {
         let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
-        let what = if point.rpm < self.envelope_rpm {
+        let is_rated = self.rated() == Some(point);
+        let is_full = is_rated && self.rating_v > FULL_BUS * self.reach_v;
+        let what = if point.rpm < self.envelope_rpm && !is_full {
             // The bus drives the whole current of the reference between its commutations.
             return format!("{torque} % of the demand, though the bus has room");
         } else if self.bus_current_limit_a.is_some() {
@@ -342,6 +356,18 @@ fn chosen(drive: &Prepared) -> Vec<Chosen> {
         })
     });
     chosen.flatten().collect()
+}
+
+/// The same at rated speed. Where Hall edges are seen at samples alone, a turn of a whole number of periods shows them
+/// always in the same place: the worse of that and of a speed just below.
+fn at_rating(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, PlantError> {
+    let at = at_speed(drive, omega_m, bus_v)?;
+    if drive.spec.inverter.rotor_sensing != RotorSensing::SampledHalls {
+        return Ok(at);
+    }
+    let below = at_speed(drive, JUST_BELOW * omega_m, bus_v)?;
+    let is_worse = below.torque_pct.unwrap_or(0.0) < at.torque_pct.unwrap_or(0.0) - ALIKE;
+    Ok(if is_worse { below } else { at })
 }
 
 /// The fixed-point program at a speed in rad/s and a bus voltage, with the demanded torque.

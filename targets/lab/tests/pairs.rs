@@ -1,4 +1,4 @@
-//! Two disturbances at once: no default drive of the library trips or oscillates.
+//! Two disturbances at once: which default drives of the library trip or oscillate.
 
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::robustness::{Cell, Outcome, robustness};
@@ -24,9 +24,22 @@ const FIRST: [(&str, Change); 10] = [
     ("ADC noise", |plant, _| plant.adc_noise = Some(1.0)),
 ];
 
+/// Motors and disturbances that a pair does not survive where one of them is that: a dead time that nobody stated, of
+/// sensors in low legs, of a small inductance and near the rated torque's trip; sensors apart where a period is
+/// as long as the current's rise.
+const BREAKING: [(&str, &str); 7] = [
+    ("br2804-1700kv", "dead time"),
+    ("hoverboard-hub", "dead time"),
+    ("odrive-d6374-150kv", "dead time"),
+    ("tekin-redline-4600kv", "Hall +5, -5, 0 deg"),
+    ("tekin-redline-4600kv", "dead time"),
+    ("velineon-3500", "Hall +5, -5, 0 deg"),
+    ("velineon-3500", "dead time"),
+];
+
 #[test]
 #[ignore = "takes ten minutes: `cargo xtask nightly` runs it"]
-fn no_pair_of_disturbances_diverges() {
+fn pairs_of_disturbances_diverge_with_a_dead_time_or_sensors_apart_alone() {
     let library = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let motors: Vec<(String, f64)> = library
         .iter()
@@ -67,5 +80,18 @@ fn no_pair_of_disturbances_diverges() {
         .filter(|(_, outcome)| *outcome != Outcome::Runs);
     let diverging = diverging.map(|(what, outcome)| format!("{what}: {}", outcome.name()));
     let diverging: Vec<String> = diverging.collect();
-    assert!(diverging.is_empty(), "{diverging:#?}");
+    println!("{} of them diverge: {diverging:#?}", diverging.len());
+    let is_known = |what: &&String| {
+        let mut known = BREAKING.iter();
+        known.any(|(motor, disturbance)| what.starts_with(motor) && what.contains(disturbance))
+    };
+    let (known, new): (Vec<_>, Vec<_>) = diverging.iter().partition(is_known);
+    assert!(new.is_empty(), "{new:#?}");
+    for (motor, disturbance) in BREAKING {
+        let of = |what: &&&String| what.starts_with(motor) && what.contains(disturbance);
+        assert!(
+            known.iter().any(|what| of(&what)),
+            "{motor} bears {disturbance}"
+        );
+    }
 }

@@ -148,19 +148,17 @@ pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnost
 /// (none when edges are sampled).
 pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -> Diagnostic {
     let slower = clock.map_or_else(
-        || ", or lengthen the control period".to_owned(),
+        || "lengthen the control period".to_owned(),
         |clock| {
-            format!(
-                ", or lower `hall_timer_clock` to {}",
-                engineering(at_most(clock), "Hz")
-            )
+            let clock = engineering(at_most(clock), "Hz");
+            format!("lower `hall_timer_clock` to {clock}")
         },
     );
     Diagnostic::new(
         Code::MinimumSpeed,
         &speed.location,
         format!(
-            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; raise the speed to {}{slower}",
+            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; {slower}, or raise the speed to {}",
             speed.given,
             significant(ticks.round()),
             rpm_at_least(least),

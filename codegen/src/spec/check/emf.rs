@@ -395,9 +395,16 @@ fn read_speed_constant<'a>(
         }
         [Basis::Rms] => Reading::LineRms,
         [Basis::BlockMean] => Reading::BlockMean,
-        [.., last] => {
+        [first, ..] => {
+            let is_amplitude = |basis: &Basis| {
+                matches!(
+                    basis,
+                    Basis::Peak | Basis::Rms | Basis::PeakToPeak | Basis::BlockMean
+                )
+            };
+            let wrong = others.iter().copied().find(|basis| !is_amplitude(basis));
             let remedy = "it is speed over the voltage between two terminals: its peak, `rms` or `block_mean`";
-            refuse(&given, last, remedy, errors);
+            refuse(&given, wrong.unwrap_or(first), remedy, errors);
             return None;
         }
     };
