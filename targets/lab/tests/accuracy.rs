@@ -50,7 +50,9 @@ fn steps_are_within_the_proven_bounds_and_compare_values_within_a_count() {
         let named = || format!("{}, {}: {found:?}", drive.motor, drive.variant);
         assert!(found.steps > 4000, "{}", named());
         assert!(found.is_within_bounds(), "{}", named());
-        assert!(found.decisions_equal_pct > 99.98, "{}", named());
+        // Coarser words round more ties the other way.
+        let equal = if *word == 32 { 99.98 } else { 99.95 };
+        assert!(found.decisions_equal_pct > equal, "{}", named());
         if *word == 32 {
             assert!(found.compares_apart_counts <= 1, "{}", named());
             assert!(found.equal_steps_pct >= least_equal(drive), "{}", named());
