@@ -38,7 +38,7 @@ const BREAKING: [(&str, &str); 7] = [
 ];
 
 #[test]
-#[ignore = "takes ten minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn pairs_of_disturbances_diverge_with_a_dead_time_or_sensors_apart_alone() {
     let library = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let motors: Vec<(String, f64)> = library
