@@ -18,8 +18,8 @@ pub use collector::{Collector, Diagnostics};
 pub use explanation::Explanation;
 pub use location::Location;
 pub use number::{
-    at_least, at_most, engineering, frequency, list, percent, rpm, rpm_at_least, rpm_at_most,
-    significant,
+    at_least, at_most, engineering, enumerated, frequency, list, percent, rpm, rpm_at_least,
+    rpm_at_most, significant,
 };
 pub use render::Anchors;
 

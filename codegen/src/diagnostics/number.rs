@@ -126,7 +126,12 @@ pub fn list<S: AsRef<str>>(words: &[S], last: &str) -> String {
         .iter()
         .map(|word| format!("`{}`", word.as_ref()))
         .collect();
-    match quoted.as_slice() {
+    enumerated(&quoted, last)
+}
+
+/// Clauses: `a, b or c`.
+pub fn enumerated(clauses: &[String], last: &str) -> String {
+    match clauses {
         [] => String::new(),
         [only] => only.clone(),
         [head @ .., tail] => format!("{} {last} {tail}", head.join(", ")),

@@ -63,7 +63,7 @@ impl FieldRule<'_> {
         units.find(|unit| Unit::parse(unit).is_some())
     }
 
-    /// How the field is written where nothing is given yet, a clause: its unit, or an example.
+    /// What to write for a field that is missing, a clause: its name with its unit, or an example.
     pub fn form(self) -> String {
         let (name, example) = (self.name, self.example());
         self.unit().map_or_else(

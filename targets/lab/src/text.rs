@@ -1,6 +1,13 @@
-//! Numbers as text.
+//! Numbers and diagnostics as text.
 
 use hexagen_codegen::diagnostics::engineering;
+
+/// A diagnostic, or a note of it, without the file, variant or argument and the place in it.
+pub fn without_place(diagnostic: &str) -> &str {
+    let starts = ["error[", "note: "];
+    let start = starts.iter().find_map(|start| diagnostic.find(start));
+    &diagnostic[start.unwrap_or_default()..]
+}
 
 /// A number with this many significant digits, without exponent where that is readable; a dash for
 /// `None`.

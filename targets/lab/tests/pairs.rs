@@ -10,7 +10,7 @@ const VARIANTS: [&str; 2] = ["pdcc", "pi-pwm"];
 /// A change of the plant of a bus voltage.
 type Change = fn(&mut PlantOptions, f64);
 
-/// First disturbances; the second is each of the robustness sheet.
+/// The first disturbance of a pair; the second is each one of the robustness sheet in turn.
 const FIRST: [(&str, Change); 10] = [
     ("R -30 %", |plant, _| plant.scale_r = Some(0.7)),
     ("R +30 %", |plant, _| plant.scale_r = Some(1.3)),
@@ -24,9 +24,8 @@ const FIRST: [(&str, Change); 10] = [
     ("ADC noise", |plant, _| plant.adc_noise = Some(1.0)),
 ];
 
-/// Motors and disturbances that a pair does not survive where one of them is that: a dead time that nobody stated, of
-/// sensors in low legs, of a small inductance and near the rated torque's trip; sensors apart where a period is
-/// as long as the current's rise.
+/// Motors, and a disturbance beside which another one makes them trip or oscillate. The dead time is one that nobody
+/// stated; sensors apart trouble motors whose control period is as long as the rise of their current.
 const BREAKING: [(&str, &str); 7] = [
     ("br2804-1700kv", "dead time"),
     ("hoverboard-hub", "dead time"),

@@ -106,7 +106,7 @@ fn figures(drive: &Prepared, params: &PlantParams, [share, k_b]: [f64; 2]) -> [f
     ]
 }
 
-/// Least EMF from which a constant is learnt, over the bus.
+/// Least EMF of a phase at which the constant is learnt, over the bus voltage.
 const LEAST_EMF: f64 = 1.0 / 16.0;
 
 /// Every motor with every plant and speed: what it learns, and the torque of which it is asked.

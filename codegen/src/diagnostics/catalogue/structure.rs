@@ -1,7 +1,7 @@
 //! Texts about the structure of a specification: syntax, sections, fields, files.
 
 use super::part::Part;
-use crate::diagnostics::{Code, Diagnostic, Location, list};
+use crate::diagnostics::{Code, Diagnostic, Location, enumerated, list};
 
 /// The macro call or the file does not parse; `what` is the parser's message.
 pub fn syntax(at: &Location, what: &str) -> Diagnostic {
@@ -185,17 +185,14 @@ fn assignments(name: &str, values: &[String]) -> String {
 /// None of several alternative fields is given; each with its form, a clause.
 pub fn missing_alternative(at: &Location, section: &str, fields: &[(&str, String)]) -> Diagnostic {
     let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
-    let forms: Vec<&str> = fields.iter().map(|(_, form)| form.as_str()).collect();
-    let forms = match forms.as_slice() {
-        [forms @ .., last] if !forms.is_empty() => format!("{} or {last}", forms.join(", ")),
-        forms => forms.concat(),
-    };
+    let forms: Vec<String> = fields.iter().map(|(_, form)| form.clone()).collect();
     Diagnostic::new(
         Code::MissingField,
         at,
         format!(
-            "`{section}` lacks the field {}; add one: {forms}",
+            "`{section}` lacks the field {}; add one: {}",
             list(&names, "or"),
+            enumerated(&forms, "or"),
         ),
     )
 }

@@ -519,7 +519,7 @@ impl Drive<'_> {
         }
     }
 
-    /// The function that writes the learnt displacements of the Hall sensors.
+    /// The function that tells how far the Hall sensors stand from their places, as learnt.
     fn hall_offsets(&self, words: [&str; 3]) -> Method {
         let words = words.map(|word| format!("hexagen_shared(&drive->state.{word})"));
         Method {

@@ -155,7 +155,7 @@ fn odd_one<'a>(
     }
 }
 
-/// The constant that more than half of all statements agree with, and not all, if there is one.
+/// The constant that most statements agree with, more than half of them; none where all agree.
 fn majority(phase: f64, claims: &[Claim]) -> Option<f64> {
     let implied = claims.iter().flat_map(|claim| {
         let factors = claim.factors.iter();

@@ -56,33 +56,26 @@ pub(super) fn check_period(
     let time_constant = motor.inductance? / motor.resistance?;
     let resistance = reader.part("resistance", String::new);
     let inductance = reader.part("inductance", String::new);
-    if time_constant > LONGEST_TIME_CONSTANT {
+    let longest = inverter.period_within(GREATEST_DECAY * time_constant);
+    let f_pwm = f64::from(inverter.pwm_per_control) / longest;
+    let (current, bus) = (motor.rated_current.as_ref(), inverter.v_bus.as_ref());
+    let drop = |impedance: f64| impedance * current.map_or(0.0, |given| given.si);
+    let exceeds = |drop: f64, most: f64| bus.is_some_and(|bus| drop > most * bus.si);
+    // Between two terminals, of a sinusoidal current.
+    let is_beyond = exceeds(3.0_f64.sqrt() * drop(motor.resistance?), MOST_OF_BUS);
+    let absurd = if time_constant > LONGEST_TIME_CONSTANT {
         // What the bus cannot drive through the inductance at rated speed is too much of it.
         let reactance = motor.rated_speed.as_ref().map_or(0.0, |speed| {
             speed.si * f64::from(motor.pole_pairs.unwrap_or(1)) * motor.inductance.unwrap_or(0.0)
         });
-        let (current, bus) = (motor.rated_current.as_ref(), inverter.v_bus.as_ref());
-        let drop = reactance * current.map_or(0.0, |given| given.si);
-        let (likely, other) = if bus.is_some_and(|bus| drop > bus.si) {
-            (inductance, resistance)
-        } else {
-            (resistance, inductance)
-        };
-        let error = catalogue::absurd_time_constant(&likely, &other, time_constant);
-        errors.push(error);
-        return Some(Decay::Absurd);
-    }
-    if t_s / time_constant <= GREATEST_DECAY * (1.0 + 1e-9) {
+        Some(!exceeds(drop(reactance), 1.0))
+    } else if t_s / time_constant <= GREATEST_DECAY * (1.0 + 1e-9) {
         return Some(Decay::Short);
-    }
-    let longest = inverter.period_within(GREATEST_DECAY * time_constant);
-    let f_pwm = f64::from(inverter.pwm_per_control) / longest;
-    let (current, bus) = (motor.rated_current.as_ref(), inverter.v_bus.as_ref());
-    // Between two terminals, of a sinusoidal current.
-    let drop = 3.0_f64.sqrt() * motor.resistance? * current.map_or(0.0, |given| given.si);
-    let is_beyond = bus.is_some_and(|bus| drop > MOST_OF_BUS * bus.si);
-    if f_pwm > ABSURD_PWM {
-        let (likely, other) = if is_beyond {
+    } else {
+        (f_pwm > ABSURD_PWM).then_some(is_beyond)
+    };
+    if let Some(is_resistance) = absurd {
+        let (likely, other) = if is_resistance {
             (resistance, inductance)
         } else {
             (inductance, resistance)

@@ -6,7 +6,7 @@ use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::advise::{Advice, DEVIATING_AT, OWN, Point, SPEEDS, Tried, Worst, advise};
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Column, Table};
-use hexagen_lab::text::significant;
+use hexagen_lab::text::{significant, without_place};
 
 /// Options of `advise`.
 #[derive(Args, Clone, Debug)]
@@ -52,8 +52,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 fn refusals(advice: &Advice) -> Vec<String> {
     let reasons = advice.tried.iter().filter_map(|tried| {
         let line = tried.refused.as_ref()?.lines().next()?;
-        let start = line.find("error[").unwrap_or(0);
-        Some(line[start..].to_owned())
+        Some(without_place(line).to_owned())
     });
     let mut reasons: Vec<String> = reasons.collect();
     reasons.sort();

@@ -12,6 +12,7 @@ use clap::Args;
 use hexagen_codegen::diagnostics::{Code, Diagnostic};
 use hexagen_codegen::spec::{BOARDS, Board, check, parse_toml, section_of};
 use hexagen_lab::LabError;
+use hexagen_lab::text::without_place;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, BufRead, IsTerminal, Write};
@@ -433,10 +434,7 @@ fn errors(text: &str, file: &Path) -> Vec<Diagnostic> {
 
 /// A failure by wrong values of which no file was made: without places in it.
 fn refused(wrong: &str) -> Failure {
-    let lines = wrong.lines().map(|line| {
-        let start = line.find("error[").or_else(|| line.find("note: "));
-        &line[start.unwrap_or_default()..]
-    });
+    let lines = wrong.lines().map(without_place);
     let lines: Vec<&str> = lines.chain(["Nothing was written."]).collect();
     LabError::Specification(lines.join("\n")).into()
 }

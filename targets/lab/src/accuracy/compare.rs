@@ -39,12 +39,14 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// The figure of merit with the largest difference in closed loop, relative to the tolerance,
-    /// and its speed in rpm.
-    pub fn furthest(&self) -> Option<(&FigureDifference, f64)> {
+    /// The figure of merit with the largest `difference`, relative to the tolerance, and its speed in rpm.
+    pub fn furthest(
+        &self,
+        difference: impl Fn(&FigureDifference) -> f64,
+    ) -> Option<(&FigureDifference, f64)> {
         let figures = self.closed_loop.iter();
         let figures = figures.flat_map(|at| at.figures.iter().map(move |figure| (figure, at.rpm)));
-        figures.max_by(|(one, _), (other, _)| one.of_allowance.total_cmp(&other.of_allowance))
+        figures.max_by(|(one, _), (other, _)| difference(one).total_cmp(&difference(other)))
     }
 }
 

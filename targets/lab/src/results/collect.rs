@@ -9,7 +9,7 @@ use crate::engine::{EngineKind, PlantOptions, Prepared, SelectedMotor, stem};
 use crate::envelope::TorqueBounds;
 use crate::judgement::Judgement;
 use crate::robustness::robustness;
-use crate::text::significant;
+use crate::text::{significant, without_place};
 use crate::verification::{Checked, verify_drives};
 use crate::{LabError, Progress};
 use hexagen_codegen::spec::Envelope;
@@ -220,7 +220,7 @@ fn plan(
     // Reasons for left-out rows and captures, with their rows; no capture stands for both.
     let mut left_out: Vec<(&str, String, Vec<&str>)> = Vec::new();
     let mut leave_out = |word, error: LabError, row| {
-        let reason = without_place(&error.to_string());
+        let reason = without_place(&error.to_string()).to_owned();
         let mut alike = left_out.iter_mut();
         match alike.find(|left| left.0 == word && left.1 == reason) {
             Some((_, _, rows)) => rows.push(row),
@@ -295,14 +295,6 @@ fn plan(
 /// What a board without an edge timer has not.
 const NO_TIMER: &str = "Every row sees Hall edges at samples alone, half a period late on the mean: the motor file has no \
      `hall_timer_clock`, so that no row is repeated with captured edges.";
-
-/// A diagnostic without its variant and column.
-fn without_place(diagnostic: &str) -> String {
-    match diagnostic.find("error[") {
-        Some(start) => diagnostic[start..].to_owned(),
-        None => diagnostic.to_owned(),
-    }
-}
 
 /// Errors of single steps of every kind of controller at every word length; a refused word length
 /// is a note.

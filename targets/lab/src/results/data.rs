@@ -83,6 +83,18 @@ pub struct Verification {
     pub mismatches: u64,
 }
 
+impl Results {
+    /// The motor file's own controller; none on a page without it.
+    pub fn own_variant(&self) -> Option<&Variant> {
+        self.variants.get(self.own.as_ref()?.variant)
+    }
+
+    /// The torque that a variant is asked for, newton metres: its set-point limit may be below the rated one.
+    pub fn demand(&self, of: &Variant) -> f64 {
+        of.reach.unwrap_or(self.torque)
+    }
+}
+
 /// One controller variant: its runs, records, formats and texts.
 #[derive(Clone, Debug)]
 pub struct Variant {

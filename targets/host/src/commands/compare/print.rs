@@ -93,17 +93,13 @@ fn of_word(rows: &[&Row], word: u32) -> String {
     let compared: Vec<_> = compared.collect();
     let apart = compared.iter();
     let apart = apart.map(|(_, accuracy)| accuracy.one_step.compares_apart_counts);
-    let furthest = compared.iter().flat_map(|(controller, accuracy)| {
-        let loops = accuracy.closed_loop.iter();
-        loops.flat_map(move |at| {
-            let figures = at.figures.iter();
-            figures.map(move |figure| (controller, figure, at.rpm))
-        })
+    let in_closed_loop = |figure: &FigureDifference| figure.in_closed_loop().0;
+    let furthest = compared.iter().filter_map(|(controller, accuracy)| {
+        let (figure, rpm) = accuracy.furthest(in_closed_loop)?;
+        Some((controller, figure, rpm))
     });
-    let furthest = furthest.max_by(|(_, one, _), (_, other, _)| {
-        let [one, other] = [one, other].map(|figure| figure.in_closed_loop().0);
-        one.total_cmp(&other)
-    });
+    let furthest = furthest
+        .max_by(|(_, one, _), (_, other, _)| in_closed_loop(one).total_cmp(&in_closed_loop(other)));
     let Some(apart) = apart.max() else {
         return format!("with words of {word} bits nothing could be compared.");
     };
@@ -169,7 +165,10 @@ fn accuracy_table(rows: &[Row]) -> Table {
             .closed_loop
             .iter()
             .filter(|at| at.tripped.is_some());
-        let closed_loop = match (trips.next(), accuracy.furthest()) {
+        let closed_loop = match (
+            trips.next(),
+            accuracy.furthest(|figure| figure.of_allowance),
+        ) {
             (Some(at), _) => format!("trips, {:.0} rpm", at.rpm),
             (None, Some((figure, rpm))) => {
                 format!("{}: {}, {rpm:.0} rpm", figure.text(), figure.figure)

@@ -25,10 +25,7 @@ const SIZE: (f64, f64) = (550.0, 280.0);
 
 /// The plots; nothing if the controller has no record.
 pub fn blocks(data: &Results) -> Vec<Block> {
-    let own = data
-        .own
-        .as_ref()
-        .and_then(|own| data.variants.get(own.variant));
+    let own = data.own_variant();
     let Some((own, record)) = own.and_then(|own| Some((own, own.records.last()?))) else {
         return Vec::new();
     };
@@ -94,7 +91,7 @@ fn currents(data: &Results, own: &Variant, record: &Record) -> Plot {
 /// first, and the axis is that of the own one.
 fn torque(data: &Results, drive: &Variant, record: &Record) -> Plot {
     let scale = TorqueScale::of(data.torque);
-    let demand = scale.per_nm * drive.reach.unwrap_or(data.torque);
+    let demand = scale.per_nm * data.demand(drive);
     let own = data.own.as_ref().map(|own| own.variant);
     let of = |record: &Record| {
         columns_between(&record.trace, &WINDOW, COLUMNS, |k| {

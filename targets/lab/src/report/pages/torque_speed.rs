@@ -29,8 +29,10 @@ pub fn blocks(data: &Results) -> Vec<Block> {
             .collect(),
         limit_rpm: limit_rpm(of),
     });
+    let own = data.own_variant();
+    let demand = own.map_or(data.torque, |own| data.demand(own));
     let plot = torque_speed(&TorqueSpeed {
-        torque: scale.per_nm * demand(data),
+        torque: scale.per_nm * demand,
         unit: scale.unit,
         rated_rpm: data.motor.rated_speed * 60.0 / TAU,
         curves: curves.collect(),
@@ -63,15 +65,6 @@ pub fn blocks(data: &Results) -> Vec<Block> {
             figures: vec![Figure::new(None, "", plot)],
         },
     ]
-}
-
-/// The torque that the own controller is asked for.
-fn demand(data: &Results) -> f64 {
-    let own = data
-        .own
-        .as_ref()
-        .and_then(|own| data.variants.get(own.variant));
-    own.and_then(|own| own.reach).unwrap_or(data.torque)
 }
 
 /// The bounds by name, in the plot's unit.

@@ -89,7 +89,7 @@ fn limit_text(limit: &SpeedLimit) -> Option<String> {
 }
 
 fn torque(data: &Results, variant: &Variant, run: &Run) -> String {
-    let torque = quantity(variant.reach.unwrap_or(data.torque), "Nm");
+    let torque = quantity(data.demand(variant), "Nm");
     let limit = run.limit.as_ref().and_then(limit_text);
     limit.map_or_else(String::new, |limit| format!("{torque} up to {limit}"))
 }
@@ -167,7 +167,7 @@ fn furthest(data: &Results, own: usize) -> String {
     };
     let own_limit = data.variants.get(own).and_then(limit_of).unwrap_or(0.0);
     // Those that make less torque with the same largest set-point are no match.
-    let torque_of = |variant: &Variant| variant.reach.unwrap_or(data.torque);
+    let torque_of = |variant: &Variant| data.demand(variant);
     let own_torque = data.variants.get(own).map_or(data.torque, torque_of);
     let best = data
         .variants

@@ -163,7 +163,7 @@ fn panels<'a>(data: &'a Results, separator: &str) -> Vec<Panel<'a>> {
             color: variant(index),
             of: format!("{label} at {rpm} rpm"),
             caption: format!("{label}{separator}**{rpm}\u{a0}rpm**"),
-            demand: of.reach.unwrap_or(data.torque),
+            demand: data.demand(of),
             ideal: (0..3).map(reference).collect(),
             trace: &record.trace,
             nothing: None,
