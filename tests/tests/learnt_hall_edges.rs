@@ -6,25 +6,7 @@ use hexagen::{Drive, Sample};
 hexagen::controller! {
     /// At 625 rpm an electrical turn takes 480 periods of 50 ticks.
     pub Learning {
-        motor: {
-            pole_pairs: 4,
-            resistance: 135 mohm per_phase,
-            inductance: 0.22 mH per_phase,
-            winding: star,
-            back_emf: 0.1648 V/(rad/s) line_to_line peak,
-            emf_shape: sinusoidal,
-            rated_current: 20 A peak,
-            rated_speed: 2000 rpm,
-        },
-        inverter: {
-            bus_voltage: 48 V,
-            f_pwm: 20 kHz,
-            timer_clock: 72 MHz,
-            adc_bits: 12,
-            adc_range: 40 A,
-            current_sensing: in_phase,
-            hall_timer_clock: 1 MHz,
-        },
+        motor: "../targets/motors/trivedi-keshri-660w.toml",
         controller: pdcc { hall_learning: on },
     }
 }
