@@ -212,7 +212,6 @@ fn a_drive_that_trips_says_so_in_its_cell() {
         "mean_torque_nm",
         "ripple_pp_pct",
         "ripple_rms_pct",
-        "swing_current_pct",
         "swing_voltage_pct",
     ] {
         assert!(keys(cell).contains(&figure), "{cell}");

@@ -315,7 +315,6 @@ fn robustness() -> Robustness {
                     mean_torque_nm: Some(TORQUE - 0.1 * place as f64),
                     ripple_pp_pct: Some(12.0),
                     ripple_rms_pct: Some(2.5),
-                    swing_current_pct: Some(1.0),
                     swing_voltage_pct: Some(1.0),
                     outcome,
                     tripped: None,

@@ -31,7 +31,7 @@ pub use measure::{
 };
 pub use percent::percent;
 pub use speed::{SETTLED, Speed};
-pub use swing::Swing;
+pub use swing::voltage_swing;
 pub use trace::{PeriodRow, Trace, hexagon, quasi_square};
 pub use trip::{Cause, Trip};
 

@@ -1,78 +1,43 @@
-//! Swing of a loop from period to period, which distinguishes an unstable loop from a disturbed
-//! one.
+//! Swing of a loop's voltage from period to period, which tells an unstable loop from a disturbed one.
 //!
 //! If R and L are near their nominal values, unstable poles of a sampled current loop lie at a
 //! quarter to half a turn per period: an unstable loop oscillates with a period of two to four
-//! samples. Commutations, speed and load change the signals more slowly, or rarely. The second
-//! difference extracts the oscillation, and the median rejects single disturbances.
+//! samples, and grows until the legs bound its voltage. Commutations, speed and load change the voltage more
+//! slowly, or rarely. The second difference extracts the oscillation, and the median rejects single
+//! disturbances. (The current tells less: where the inductance is small, sensors out of place make it swing
+//! by a quarter of its amplitude at a few percent of the bus, in a loop that is stable.)
 
-use super::{PeriodRow, quasi_square};
-use serde::Serialize;
+use super::PeriodRow;
 
-/// Medians, over the periods of a record, of the second difference of vectors: four times the
-/// amplitude of an oscillation that alternates every period.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Swing {
-    /// Of the sampled current, in percent of the quasi-square reference's length.
-    pub current_pct: f64,
-    /// Of the mean terminal voltage, in percent of the bus voltage.
-    pub voltage_pct: f64,
-}
-
-impl Swing {
-    /// The swing of a record; `current` is the quasi-square reference's amplitude and `v_bus` the
-    /// true bus voltage. Zero for records of fewer than three periods.
-    pub fn of(periods: &[PeriodRow], current: f64, v_bus: f64) -> Self {
-        let (alpha, beta) = quasi_square(0.0, current);
-        let length = alpha.hypot(beta);
-        let currents = periods.iter().map(|row| crate::plant::clarke(row.currents));
-        let voltages = periods
-            .iter()
-            .map(|row| (row.v_alpha_mean, row.v_beta_mean));
-        Self {
-            current_pct: 100.0 * median_second_difference(currents) / length,
-            voltage_pct: 100.0 * median_second_difference(voltages) / v_bus,
-        }
-    }
-
-    /// The larger swing of two records, of current and voltage separately.
-    #[must_use]
-    pub fn max(self, other: Self) -> Self {
-        Self {
-            current_pct: self.current_pct.max(other.current_pct),
-            voltage_pct: self.voltage_pct.max(other.voltage_pct),
-        }
-    }
-}
-
-fn median_second_difference(vectors: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let vectors: Vec<(f64, f64)> = vectors.collect();
-    let mut differences: Vec<f64> = vectors
-        .windows(3)
-        .map(|at| (at[2].0 - 2.0 * at[1].0 + at[0].0).hypot(at[2].1 - 2.0 * at[1].1 + at[0].1))
-        .collect();
+/// Median, over the periods of a record, of the second difference of the mean terminal voltage, in percent of
+/// the true bus voltage: four times the amplitude of an oscillation that alternates every period. Zero for
+/// records of fewer than three periods.
+pub fn voltage_swing(periods: &[PeriodRow], v_bus: f64) -> f64 {
+    let difference = |at: &[PeriodRow]| {
+        let of = |of: fn(&PeriodRow) -> f64| of(&at[2]) - 2.0 * of(&at[1]) + of(&at[0]);
+        of(|row| row.v_alpha_mean).hypot(of(|row| row.v_beta_mean))
+    };
+    let mut differences: Vec<f64> = periods.windows(3).map(difference).collect();
     if differences.is_empty() {
         return 0.0;
     }
     let middle = differences.len() / 2;
-    *differences.select_nth_unstable_by(middle, f64::total_cmp).1
+    let median = *differences.select_nth_unstable_by(middle, f64::total_cmp).1;
+    100.0 * median / v_bus
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Currents that follow a slowly turning vector, jump once a sector, and alternate by a given
-    /// amplitude.
+    /// A voltage that turns slowly, jumps once a sector, and alternates by a given amplitude.
     fn record(alternating: f64) -> Vec<PeriodRow> {
         let row = |k: usize| {
             let angle = 0.01 * k as f64 + if k.is_multiple_of(33) { 0.8 } else { 0.0 };
-            let length = 10.0 + if k.is_multiple_of(2) { 1.0 } else { -1.0 } * alternating;
-            let (alpha, beta) = (length * angle.cos(), length * angle.sin());
-            let b = -0.5 * alpha + 0.75_f64.sqrt() * beta;
+            let length = 24.0 + if k.is_multiple_of(2) { 1.0 } else { -1.0 } * alternating;
             PeriodRow {
-                currents: [alpha, b, -alpha - b],
-                v_alpha_mean: 2.4 * length,
+                v_alpha_mean: length * angle.cos(),
+                v_beta_mean: length * angle.sin(),
                 ..PeriodRow::default()
             }
         };
@@ -81,16 +46,10 @@ mod tests {
 
     #[test]
     fn alternation_is_detected_and_slow_or_rare_changes_are_not() {
-        let of = |rows: &[PeriodRow]| Swing::of(rows, 10.0 * 0.75_f64.sqrt(), 48.0);
-        let calm = of(&record(0.0));
-        assert!(
-            calm.current_pct < 0.02 && calm.voltage_pct == 0.0,
-            "{calm:?}"
-        );
-        let swinging = of(&record(0.5));
-        assert!((swinging.current_pct - 20.0).abs() < 0.1, "{swinging:?}");
-        assert!((swinging.voltage_pct - 10.0).abs() < 1e-9, "{swinging:?}");
-        assert_eq!(calm.max(swinging), swinging);
-        assert_eq!(of(&record(0.5)[..2]).current_pct, 0.0);
+        let calm = voltage_swing(&record(0.0), 48.0);
+        assert!(calm < 0.02, "{calm}");
+        let swinging = voltage_swing(&record(1.2), 48.0);
+        assert!((swinging - 10.0).abs() < 0.1, "{swinging}");
+        assert_eq!(voltage_swing(&record(1.2)[..2], 48.0), 0.0);
     }
 }

@@ -31,15 +31,31 @@ fn gaussian(random: &mut fastrand::Rng) -> f64 {
 /// Slack for the rounding of times, second.
 const ROUNDING: f64 = 1e-12;
 
-/// What a sensor sees of its phase's current; `held_for`: how long the leg has been as it is. A
-/// sensor in a low leg sees nothing of what flows through the upper switch or diode, or before it
-/// has settled.
-pub(super) fn seen(low_side: LowSide, gate: Gate, held_for: f64, current: f64) -> f64 {
+/// Time constants in which a sensor settles: to 0.7 % of a step.
+const TIME_CONSTANTS: f64 = 5.0;
+
+/// What a sensor in a low leg sees of its phase's current, and whether it has settled; `held_for`: how long the
+/// leg has been as it is, after a `dead_time`. It sees nothing of what flows through the upper switch or diode,
+/// and approaches what the lower switch takes over from them.
+pub(super) fn seen(
+    low_side: LowSide,
+    (gate, held_for): (Gate, f64),
+    dead_time: f64,
+    current: f64,
+) -> (f64, bool) {
+    // The lower diode conducts what flows into the motor.
+    let of_diode = current.max(0.0);
     match gate {
-        Gate::Lower if held_for >= low_side.settling - ROUNDING => current,
-        // The lower diode conducts what flows into the motor.
-        Gate::Off => current.max(0.0),
-        Gate::Lower | Gate::Upper => 0.0,
+        Gate::Lower if held_for >= low_side.settling - ROUNDING => (current, true),
+        Gate::Lower => {
+            let before = if dead_time > 0.0 { of_diode } else { 0.0 };
+            let approached = |time: f64| -(-TIME_CONSTANTS * time / low_side.settling).exp_m1();
+            let share = approached(held_for) / approached(low_side.settling);
+            let seen = before + share * (current - before);
+            (seen, seen == current)
+        }
+        Gate::Off => (of_diode, of_diode == current),
+        Gate::Upper => (0.0, current == 0.0),
     }
 }
 

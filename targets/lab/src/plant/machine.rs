@@ -260,12 +260,13 @@ impl Plant {
         let Some(low_side) = self.params.low_side else {
             return (leg.current, true);
         };
-        let seen = adc::seen(low_side, leg.gate, leg.held_for, leg.current);
+        let gate = (leg.gate, leg.held_for);
+        let (seen, is_settled) = adc::seen(low_side, gate, self.params.dead_time, leg.current);
         let until = instant + low_side.aperture;
         let timing = (self.params.timer_period, self.params.pwm_period());
         let is_held = adc::is_held(until, next, phase, timing);
         let at_turning_point = self.leg(phase, 0.0).current;
-        let is_right = seen == leg.current || seen == at_turning_point;
+        let is_right = is_settled || seen == at_turning_point;
         (seen, is_right && is_held)
     }
 

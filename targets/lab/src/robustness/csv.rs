@@ -9,12 +9,12 @@ struct Row<'s>(
     &'s str,
     &'s str,
     Option<f64>,
-    [Option<f64>; 7],
+    [Option<f64>; 6],
     [Option<String>; 4],
     Option<&'s str>,
 );
 
-const HEADER: [&str; 15] = [
+const HEADER: [&str; 14] = [
     "controller",
     "disturbance",
     "rpm",
@@ -22,7 +22,6 @@ const HEADER: [&str; 15] = [
     "mean_torque_nm",
     "ripple_pp_pct",
     "ripple_rms_pct",
-    "swing_current_pct",
     "swing_voltage_pct",
     "tripped_s",
     "engine",
@@ -45,7 +44,7 @@ pub fn csv(sheet: &Robustness) -> Result<Vec<u8>, csv::Error> {
             let name = &column.controller;
             if let Some(reason) = &column.refused {
                 let none = [const { None }; 4];
-                writer.serialize(Row(name, "", None, [None; 7], none, Some(reason)))?;
+                writer.serialize(Row(name, "", None, [None; 6], none, Some(reason)))?;
             }
             for cell in &column.cells {
                 let (numbers, words) = values(cell.figures.as_ref());
@@ -59,16 +58,15 @@ pub fn csv(sheet: &Robustness) -> Result<Vec<u8>, csv::Error> {
     Ok(bytes)
 }
 
-fn values(figures: Option<&DisturbedFigures>) -> ([Option<f64>; 7], [Option<String>; 4]) {
+fn values(figures: Option<&DisturbedFigures>) -> ([Option<f64>; 6], [Option<String>; 4]) {
     let Some(figures) = figures else {
-        return ([None; 7], [const { None }; 4]);
+        return ([None; 6], [const { None }; 4]);
     };
     let numbers = [
         Some(figures.expected_torque_nm),
         figures.mean_torque_nm,
         figures.ripple_pp_pct,
         figures.ripple_rms_pct,
-        figures.swing_current_pct,
         figures.swing_voltage_pct,
         figures.tripped.map(|trip| trip.time_s),
     ];

@@ -8,17 +8,13 @@ mod sheet;
 pub use csv::csv;
 pub use sheet::{measured, robustness};
 
-use crate::closed_loop::{FiguresOfMerit, Swing, Trip};
+use crate::closed_loop::{FiguresOfMerit, Trip};
 use crate::engine::EngineKind;
 use serde::Serialize;
 
-/// Swing of the current, in percent, above which a controller with a modulator counts as
-/// oscillating. Stable loops of the library stay below 11 at every speed of the sheet.
-const SWINGING_CURRENT: f64 = 15.0;
-
-/// The same for the voltage: with a high inductance the current is calm while the voltage
-/// alternates between its limits.
-const SWINGING_VOLTAGE: f64 = 40.0;
+/// Swing of the voltage, in percent of the bus, above which a controller with a modulator counts as
+/// oscillating. Beside the edges of the stable range stable loops stay below 8, unstable ones above 45.
+const SWINGING: f64 = 20.0;
 
 /// Ratio to the undisturbed ripple above which a controller of whole vectors counts as oscillating:
 /// it swings by a vector in every period on any plant.
@@ -28,10 +24,10 @@ const SWINGING_RIPPLE: f64 = 2.5;
 const STEPS: [f64; 3] = [1.0, 3.0, 10.0];
 
 /// The criterion of oscillation, for reports.
-pub const SWING_RULE: &str = "A run oscillates if the median, over its control periods, of the second difference of the sampled \
-    current exceeds 15 % of the current's amplitude, or that of the mean voltage 40 % of the bus: this detects poles outside \
-    the unit circle, while commutations are too rare to affect a median. FCS-MPC and PHCC swing by a whole vector \
-    each period by design; they oscillate if their RMS ripple exceeds 2.5 times that of the undisturbed plant at this speed.";
+pub const SWING_RULE: &str = "A run oscillates if the median, over its control periods, of the second difference of the mean \
+    voltage exceeds 20 % of the bus: a loop with poles outside the unit circle grows until the legs bound its voltage, while \
+    commutations are too rare to affect a median. FCS-MPC and PHCC swing by a whole vector each period by design; they \
+    oscillate if their RMS ripple exceeds 2.5 times that of the undisturbed plant at this speed.";
 
 /// Controllers over disturbances.
 #[derive(Clone, Debug, Serialize)]
@@ -83,8 +79,6 @@ pub struct DisturbedFigures {
     pub ripple_pp_pct: Option<f64>,
     /// RMS ripple in percent of the mean, likewise.
     pub ripple_rms_pct: Option<f64>,
-    /// Swing of the sampled current in percent of the reference's length.
-    pub swing_current_pct: Option<f64>,
     /// Swing of the mean voltage in percent of the bus voltage.
     pub swing_voltage_pct: Option<f64>,
     /// Outcome of the run.
@@ -180,8 +174,8 @@ pub struct Measured {
     pub expected_torque: f64,
     /// Figures of merit.
     pub figures: FiguresOfMerit,
-    /// The largest swing of the starts.
-    pub swing: Swing,
+    /// The largest swing of the mean voltage of the starts, in percent of the bus voltage.
+    pub swing: f64,
     /// What tripped the drive.
     pub tripped: Option<Trip>,
 }
@@ -204,8 +198,7 @@ impl Measured {
             mean_torque_nm: figures.mean_torque_nm,
             ripple_pp_pct: figures.ripple_pp_pct,
             ripple_rms_pct: figures.ripple_rms_pct,
-            swing_current_pct: swing.map(|swing| swing.current_pct),
-            swing_voltage_pct: swing.map(|swing| swing.voltage_pct),
+            swing_voltage_pct: swing,
             outcome,
             tripped: self.tripped,
             heat: match outcome {
@@ -217,7 +210,7 @@ impl Measured {
 
     fn oscillates(&self, undisturbed: &Self) -> bool {
         if self.modulates {
-            self.swing.current_pct > SWINGING_CURRENT || self.swing.voltage_pct > SWINGING_VOLTAGE
+            self.swing > SWINGING
         } else {
             let ripples = self
                 .figures
@@ -276,7 +269,7 @@ mod tests {
                 ripple_rms_pct: ripple_rms_pct.into(),
                 ..FiguresOfMerit::default()
             },
-            swing: Swing::default(),
+            swing: 0.0,
             tripped: None,
         }
     }
@@ -310,24 +303,20 @@ mod tests {
     #[test]
     fn outcomes_follow_the_documented_rule() {
         let undisturbed = run(2.0, 4.0);
-        let swing = |current_pct, voltage_pct| Measured {
-            swing: Swing {
-                current_pct,
-                voltage_pct,
-            },
+        let swing = |swing| Measured {
+            swing,
             ..undisturbed
         };
         let outcome = |measured: Measured| measured.judged(&undisturbed).outcome;
-        assert_eq!(outcome(swing(14.9, 39.9)), Outcome::Runs);
-        assert_eq!(outcome(swing(15.1, 0.0)), Outcome::Oscillates);
-        assert_eq!(outcome(swing(0.0, 40.1)), Outcome::Oscillates);
-        for part in ["15 %", "40 % of the bus", "2.5 times"] {
+        assert_eq!(outcome(swing(19.9)), Outcome::Runs);
+        assert_eq!(outcome(swing(20.1)), Outcome::Oscillates);
+        for part in ["20 % of the bus", "2.5 times"] {
             assert!(SWING_RULE.contains(part), "{part}");
         }
         // Whole vectors swing by design: only ripple counts.
         let chooses = |ripple| Measured {
             modulates: false,
-            swing: swing(50.0, 90.0).swing,
+            swing: 90.0,
             ..run(2.0, ripple)
         };
         assert_eq!(outcome(chooses(9.9)), Outcome::Runs);
@@ -347,13 +336,10 @@ mod tests {
             (Outcome::Trips, Heat::Broken)
         );
         // A tripped drive has no figures of merit, and no swing.
+        assert_eq!(figures.swing_voltage_pct, None);
         assert_eq!(
-            (figures.swing_current_pct, figures.swing_voltage_pct),
-            (None, None)
-        );
-        assert_eq!(
-            chooses(1.0).judged(&undisturbed).swing_current_pct,
-            Some(50.0)
+            chooses(1.0).judged(&undisturbed).swing_voltage_pct,
+            Some(90.0)
         );
     }
 }

@@ -5,7 +5,7 @@
 
 use super::disturbance::{Disturbance, disturbances};
 use super::{Cell, Column, Measured, Robustness};
-use crate::closed_loop::{RunOptions, Swing, measure};
+use crate::closed_loop::{RunOptions, measure, voltage_swing};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, SetPoint};
 use crate::plant::PlantParams;
 use crate::results::SPEEDS;
@@ -208,13 +208,13 @@ pub fn measured(
     let swings = measured
         .traces
         .iter()
-        .map(|trace| Swing::of(&trace.periods, run.current, params.v_bus));
+        .map(|trace| voltage_swing(&trace.periods, params.v_bus));
     Ok(Measured {
         engine: drive.engine_kind(),
         modulates: drive.spec.controller.modulates(),
         expected_torque: expected,
         figures: measured.figures,
-        swing: swings.reduce(Swing::max).unwrap_or_default(),
+        swing: swings.fold(0.0, f64::max),
         tripped: measured.tripped,
     })
 }
