@@ -152,7 +152,7 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
     let torque = set_point * envelope.torque_constant();
     let taken = envelope.bus_voltage(rated, set_point);
     let bus = spec.inverter.v_bus;
-    (taken > bus * (1.0 + 1e-9)).then(|| {
+    (envelope.torque(rated) < torque * (1.0 - 1e-9)).then(|| {
         let voltages = envelope.voltages(rated, set_point);
         let values = [
             origins.emf_constant(),

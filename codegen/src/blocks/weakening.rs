@@ -17,8 +17,9 @@ use crate::spec::{MOST_TURN, share_of_torque};
 
 /// Periods in which the angle rises from none to its greatest while current is left.
 const RISE: f64 = 128.0;
-/// The angle rises so much more slowly once the current is at its greatest: it then rests where four fifths
-/// of the voltages are cut, which makes more torque; before, where half are, which ripples less.
+/// The angle falls so much more slowly while current is left: it then rests where a fifth of the voltages are
+/// cut, which keeps the torque. Once the current is at its greatest it rises so much more slowly: it rests where
+/// four fifths are cut, which makes more torque than a current turned further would.
 const SLOWER: u32 = 2;
 /// Fraction bits of the share of the torque.
 const SHARE_BITS: u32 = 30;
@@ -35,11 +36,12 @@ pub struct FieldWeakening<'b> {
     top: i64,
 }
 
-/// The angle of a step, and by how much it rises if the voltage is cut.
+/// The angle of a step, and by how much it rises if the voltage is cut, and falls if not.
 #[derive(Clone, Copy, Debug)]
 pub struct Weakened<'b> {
     angle: Memory<'b>,
     rise: Expr<'b>,
+    fall: Expr<'b>,
 }
 
 /// An angle of so many turns as a word.
@@ -102,22 +104,24 @@ impl<'b> FieldWeakening<'b> {
                 top.mul_floor(turned, shift) - surplus_lifted.mul_floor(unit, shift)
             });
         }
-        let doc =
-            "Rise of the angle in a period in which the voltage is cut, while current is left.";
+        let doc = "Greatest change of the angle in a period.";
         let quick = l.number("weakening_step", step(), doc);
         named! {
             let j_weak = turned.map(|turned| pushes.sign(turned));
             let slow = quick >> SLOWER;
             let rise_weak = surplus.is_above(0).choose(quick, slow);
+            let fall_weak = surplus.is_above(0).choose(slow, quick);
         }
-        let [a, b, rise] = l.b.join([
+        let [a, b, rise, fall] = l.b.join([
             ("j_a_now", j_weak.a(), along.a()),
             ("j_b_now", j_weak.b(), along.b()),
             ("weakening_rise", rise_weak, quick),
+            ("weakening_fall", fall_weak, quick),
         ]);
         let weakened = Weakened {
             angle: self.angle,
             rise,
+            fall,
         };
         (Phases([a, b]), weakened)
     }
@@ -130,10 +134,8 @@ impl<'b> Weakened<'b> {
         l.b.stage("turn_reference", &[doc]);
         let doc = "Greatest angle by which the reference is turned, 2^32 a turn.";
         let most = l.number("weakening_max", turn_word(MOST_TURN), doc);
-        let doc = "Fall of the angle in a period in which the voltage is not cut.";
-        let fall = l.number("weakening_fall", -step(), doc);
         named! {
-            let weakening_new = (self.angle.read() + cut.choose(self.rise, fall)).clamp(0, most);
+            let weakening_new = (self.angle.read() + cut.choose(self.rise, -self.fall)).clamp(0, most);
         }
         (self.angle, weakening_new)
     }

@@ -7,17 +7,22 @@
 //!
 //! with e the mean of the EMF in between. That is linear in the set-point, so each angle and each pair of
 //! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
-//! its two phases; its commutations take more and are left out.
+//! its two phases; its commutations take more and are left out. Field weakening turns the current where the
+//! voltage ends: the envelope is then that of the best angle.
 
 use super::emf_shape::{phases, proportional_currents, zero_sum_integral};
+use super::weakening::turned_set_point;
 use super::{EmfShape, Reference, Spec};
 use std::f64::consts::FRAC_PI_3;
 
 /// Angles of a sector at which the voltage is looked at. The shapes' symmetries repeat the rest of a turn.
-const ANGLES: u32 = 60;
+pub(super) const ANGLES: u32 = 60;
 
 /// Steps of the search for a speed: to a millionth of the greatest.
 const HALVINGS: u32 = 20;
+
+/// Greatest speed that field weakening is looked at, over that at which the EMF takes all that the legs reach.
+const FASTEST: f64 = 4.0;
 
 /// What the greatest current of a drive depends on, SI units; motor values per phase of the star.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +49,8 @@ pub struct Envelope {
     pub max_current: f64,
     /// Greatest current drawn from the bus, ampere.
     pub bus_current: Option<f64>,
+    /// Whether field weakening turns the current where the voltage ends.
+    pub weakens: bool,
 }
 
 /// Voltage between two legs over one period: volt per ampere of set-point, and volt.
@@ -68,6 +75,7 @@ impl Envelope {
             reach: spec.reach_share(),
             max_current: inverter.max_current,
             bus_current: inverter.bus_currents.drawn,
+            weakens: spec.controller.common().field_weakening,
         }
     }
 
@@ -91,7 +99,7 @@ impl Envelope {
             return None;
         }
         let mut held = 0.0;
-        let mut lost = self.idle_speed();
+        let mut lost = self.idle_speed() * if self.weakens { FASTEST } else { 1.0 };
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(held, lost);
             if self.torque(middle) < torque {
@@ -111,9 +119,15 @@ impl Envelope {
     /// Greatest set-point at a speed, ampere.
     pub fn set_point(&self, omega_m: f64) -> f64 {
         let current = self.max_current.min(self.of_voltage(omega_m));
-        self.bus_current
-            .map_or(current, |bus| current.min(self.of_power(omega_m, bus)))
-            .max(0.0)
+        let current = self
+            .bus_current
+            .map_or(current, |bus| current.min(self.of_power(omega_m, bus)));
+        let turned = if self.weakens && current < self.max_current {
+            turned_set_point(self, omega_m)
+        } else {
+            0.0
+        };
+        current.max(turned).max(0.0)
     }
 
     /// Bus voltage that a set-point in ampere takes at a speed in mechanical rad/s, volt.
@@ -137,8 +151,15 @@ impl Envelope {
         self.max_current * self.emf_shape.current_peak(self.reference)
     }
 
-    fn line_voltage(&self) -> f64 {
+    /// Voltage that the legs reach between two of them, volt.
+    pub fn line_voltage(&self) -> f64 {
         self.v_bus * self.reach
+    }
+
+    /// exp(-R Ts/L), and the voltage per ampere that a change of the current takes, ohm.
+    pub(super) fn discrete(&self) -> (f64, f64) {
+        let decay = (-self.resistance * self.t_s / self.inductance).exp();
+        (decay, self.resistance / (1.0 - decay))
     }
 
     /// By the voltages between all legs.
@@ -165,8 +186,7 @@ impl Envelope {
 
     fn lines_of_three(&self, omega_m: f64) -> Vec<Line> {
         let turn = omega_m * self.pole_pairs * self.t_s;
-        let decay = (-self.resistance * self.t_s / self.inductance).exp();
-        let gain = self.resistance / (1.0 - decay);
+        let (decay, gain) = self.discrete();
         let lines = |from: [f64; 3], to: [f64; 3], emf: [f64; 3]| {
             [(0, 1), (1, 2), (2, 0)].map(|(p, q)| Line {
                 drop: gain * ((to[p] - to[q]) - decay * (from[p] - from[q])),
@@ -197,7 +217,7 @@ impl Envelope {
     }
 
     /// Mean of the phase currents' squares, summed, per squared ampere of set-point.
-    fn squared_currents(&self) -> f64 {
+    pub(super) fn squared_currents(&self) -> f64 {
         match self.reference {
             Reference::QuasiSquare => 2.0,
             Reference::Proportional => {
@@ -214,7 +234,7 @@ impl Envelope {
     }
 
     /// Phase currents of a proportional reference per ampere of set-point.
-    fn unit_currents(&self, theta: f64) -> [f64; 3] {
+    pub(super) fn unit_currents(&self, theta: f64) -> [f64; 3] {
         let ratio = self.emf_shape.torque_factor(self.reference);
         proportional_currents(self.emf_shape, ratio, theta)
     }
@@ -258,6 +278,7 @@ mod tests {
         reach: 1.0,
         max_current: 22.0,
         bus_current: None,
+        weakens: false,
     };
 
     fn near(left: f64, right: f64) -> bool {
@@ -343,6 +364,53 @@ mod tests {
             0.9 * window.bus_voltage(230.0, 20.0),
             DRIVE.bus_voltage(230.0, 20.0)
         ));
+    }
+
+    /// Currents of a sine turned by an angle in short periods, by phasors: the greatest torque of the angles that
+    /// the voltage allows.
+    #[test]
+    fn a_weakened_sine_has_the_torque_of_its_best_phasor() {
+        let drive = Envelope {
+            emf_shape: EmfShape::Sinusoidal,
+            t_s: 1e-7,
+            weakens: true,
+            ..DRIVE
+        };
+        for omega_m in [260.0, 300.0, 360.0] {
+            let (reactance, emf) = (
+                4.0 * omega_m * drive.inductance,
+                drive.emf_constant * omega_m,
+            );
+            let most = (0..=750_u32).map(|step| {
+                let against = 22.0 * (f64::from(step) / 10.0).to_radians().sin();
+                // Voltage of a current along the EMF beside the one against the field.
+                let fits = |along: f64| {
+                    let real = emf + drive.resistance * along - reactance * against;
+                    let imaginary = drive.resistance * against + reactance * along;
+                    3_f64.sqrt() * real.hypot(imaginary) <= 48.0
+                };
+                let top = (22.0_f64.powi(2) - against.powi(2)).sqrt();
+                let tried = (0..=2200_u32).map(|along| f64::from(along) / 2200.0 * top);
+                tried.filter(|along| fits(*along)).fold(0.0, f64::max)
+            });
+            let best = most.fold(0.0, f64::max);
+            let found = drive.set_point(omega_m);
+            assert!(
+                (found / best - 1.0).abs() < 0.01,
+                "{omega_m}: {found} {best}"
+            );
+        }
+        // At a speed beyond, the whole torque's; without weakening the EMF alone ends it.
+        let plain = Envelope {
+            weakens: false,
+            ..drive
+        };
+        let (with, without) = (drive.speed(2.0), plain.speed(2.0));
+        assert!(
+            with > without.map(|speed| 1.15 * speed),
+            "{with:?} {without:?}"
+        );
+        assert_eq!(plain.torque(340.0), 0.0);
     }
 
     #[test]

@@ -441,8 +441,8 @@ impl InverterSpec {
         }
     }
 
-    /// Least and greatest count of the bus ADC without a fault. The greatest count of all is one, as
-    /// the voltage may be any above it.
+    /// Least and greatest count of the bus ADC without a fault: those nearest to the levels, so that a bus at a level
+    /// does not trip by the ADC's rounding. The greatest count of all is a fault, as the voltage may be any above it.
     pub fn bus_counts(&self) -> [u16; 2] {
         let BusSource::Measured {
             gain,
@@ -455,9 +455,8 @@ impl InverterSpec {
             return [0, u16::MAX];
         };
         let full = f64::from((1_u32 << adc_bits) - 1);
-        // Decimal units may round a whole number.
-        let least = (under / gain - 1e-6).ceil().max(0.0);
-        let most = (over / gain + 1e-6).floor().min(full - 1.0);
+        let least = (under / gain).round();
+        let most = (over / gain).round().min(full - 1.0);
         [
             least as u16,
             if over > 0.0 { most as u16 } else { u16::MAX },

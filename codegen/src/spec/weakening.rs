@@ -2,6 +2,7 @@
 
 use super::EmfShape;
 use super::emf_shape::proportional_currents;
+use super::envelope::{ANGLES as SECTOR, Envelope};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
 
@@ -41,6 +42,71 @@ fn exact_share(shape: EmfShape, turn: f64) -> f64 {
         (0..ANGLES).map(at).sum::<f64>()
     };
     0.5 * (torque(turn) + torque(-turn)) / torque(0.0)
+}
+
+/// Greatest set-point of a drive at a speed in mechanical rad/s, ampere, over the angles by which the reference
+/// turns: at each of them flows the greatest current, less what the set-point does not ask of its part along the
+/// EMF. Negative where no angle keeps the voltages within what the legs reach.
+pub(super) fn turned_set_point(drive: &Envelope, omega_m: f64) -> f64 {
+    let turn = omega_m * drive.pole_pairs * drive.t_s;
+    let degrees = 6 * SECTOR;
+    // The angles of a sector are whole degrees, so that a turned current is another row of a table.
+    let currents = |ahead: f64| -> Vec<[f64; 3]> {
+        let angles = (0..degrees).map(|degree| TAU * f64::from(degree) / f64::from(degrees));
+        angles
+            .map(|theta| drive.unit_currents(theta + ahead))
+            .collect()
+    };
+    let (from, to) = (currents(0.0), currents(turn));
+    let (decay, gain) = drive.discrete();
+    let drops: Vec<[f64; 3]> = from
+        .iter()
+        .zip(&to)
+        .map(|(from, to)| phase_pairs(|x| gain * (to[x] - decay * from[x])))
+        .collect();
+    let sector: Vec<[f64; 3]> = (0..SECTOR)
+        .map(|degree| {
+            let theta = TAU * f64::from(degree) / f64::from(degrees);
+            let emf = drive.mean_emf(theta, turn);
+            phase_pairs(|x| omega_m * emf[x])
+        })
+        .collect();
+    let [square, fourth] = share_of_torque(drive.emf_shape);
+    let most = (MOST_TURN * f64::from(degrees)).round() as usize;
+    let reach = drive.line_voltage();
+    let of_turn = |ahead: usize| {
+        let angle = ahead as f64 / f64::from(degrees);
+        let share = 1.0 - angle * angle * (square - fourth * angle * angle);
+        let top = share * drive.max_current;
+        let (mut least, mut greatest) = (f64::NEG_INFINITY, top.min(of_power(drive, omega_m)));
+        for (at, emf) in sector.iter().enumerate() {
+            let turned = drops[(at + ahead) % drops.len()];
+            for line in 0..3 {
+                // The voltage is fixed + drop j, with j the set-point.
+                let drop = drops[at][line];
+                let fixed = drive.max_current * turned[line] - top * drop + emf[line];
+                let ends = [(reach - fixed) / drop, (-reach - fixed) / drop];
+                greatest = greatest.min(ends[0].max(ends[1]));
+                least = least.max(ends[0].min(ends[1]));
+            }
+        }
+        if least <= greatest { greatest } else { -1.0 }
+    };
+    (1..=most).map(of_turn).fold(-1.0, f64::max)
+}
+
+/// Differences of the three pairs of phases.
+fn phase_pairs(of: impl Fn(usize) -> f64) -> [f64; 3] {
+    [of(0) - of(1), of(1) - of(2), of(2) - of(0)]
+}
+
+/// Set-point that a bus current allows beside the losses of the greatest current, ampere.
+fn of_power(drive: &Envelope, omega_m: f64) -> f64 {
+    drive.bus_current.map_or(f64::INFINITY, |bus| {
+        let most = drive.max_current;
+        let loss = drive.resistance * drive.squared_currents() * most * most;
+        (drive.v_bus * bus - loss) / (drive.torque_constant() * omega_m)
+    })
 }
 
 #[cfg(test)]

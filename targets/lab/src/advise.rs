@@ -23,7 +23,7 @@ use std::fmt::Write as _;
 pub const DEFAULT: &str = "pdcc";
 
 /// Variants that are tried, the default first.
-pub const VARIANTS: [&str; 16] = [
+pub const VARIANTS: [&str; 17] = [
     DEFAULT,
     "pdcc:saturation=torque_priority",
     "pdcc:saturation=keep_angle",
@@ -32,6 +32,7 @@ pub const VARIANTS: [&str; 16] = [
     "pdcc:reference=quasi_square",
     "pdcc:modulation=pair",
     "pdcc:word=16",
+    "pdcc:field_weakening=on",
     "pi-pwm",
     "pi-pwm:reference=quasi_square",
     "p-pwm",

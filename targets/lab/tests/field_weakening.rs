@@ -1,5 +1,6 @@
 //! Torque beyond the speed at which the bus voltage ends, with field weakening and without.
 
+use hexagen_codegen::spec::Envelope;
 use hexagen_lab::closed_loop::{RunOptions, mean_torque};
 use hexagen_lab::engine::{Model, MotorSource, Prepared, plant_of, prepare, run_of};
 use rayon::prelude::*;
@@ -67,7 +68,7 @@ const SPEEDS: [f64; 7] = [0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15];
 
 /// Mean torque over the demanded one at each of the `speeds`, forward and backward; `share`: of the rated torque.
 fn curves(drive: &Prepared, share: f64, speeds: &[f64]) -> Vec<Vec<f64>> {
-    let idle = hexagen_codegen::spec::Envelope::of(&drive.spec).idle_speed();
+    let idle = Envelope::of(&drive.spec).idle_speed();
     let demand = share * drive.demand();
     [1.0, -1.0]
         .into_par_iter()
@@ -76,6 +77,38 @@ fn curves(drive: &Prepared, share: f64, speeds: &[f64]) -> Vec<Vec<f64>> {
             speeds.iter().map(at).collect()
         })
         .collect()
+}
+
+#[test]
+fn the_torque_of_a_weakened_envelope_is_reached_within_two_percent() {
+    MOTORS.par_iter().for_each(|motor| {
+        let weakened = drive(motor, None, "pdcc:field_weakening=on");
+        let envelope = Envelope::of(&weakened.spec);
+        let plain = Envelope {
+            weakens: false,
+            ..envelope
+        };
+        let lasts = plain.speed(weakened.demand()).expect("is held");
+        for share in [1.02, 1.1, 1.2] {
+            let omega_m = share * lasts;
+            let most = envelope.torque(omega_m);
+            assert!(most >= plain.torque(omega_m), "{motor} at {share}");
+            let demand = most.min(weakened.demand());
+            // No angle of a low inductance helps far beyond.
+            if demand == 0.0 {
+                continue;
+            }
+            let reached = torque(&weakened, omega_m, demand);
+            println!(
+                "{motor} at {share}: {reached:.4} of {demand:.4} Nm, {:.4} without",
+                plain.torque(omega_m)
+            );
+            assert!(
+                reached > 0.98 * demand,
+                "{motor} at {share}: {reached} of {demand} Nm"
+            );
+        }
+    });
 }
 
 #[test]

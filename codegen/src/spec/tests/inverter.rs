@@ -357,10 +357,15 @@ fn a_measured_bus_trips_at_its_limits_or_where_told() {
         counts("bus_max = \"60 V\"\nbus_min = \"40 V\""),
         Ok([2000, 3000])
     );
-    assert_eq!(
-        counts("over_voltage = \"56.01 V\"\nunder_voltage = \"30.01 V\""),
-        Ok([1501, 2800])
-    );
+    // A bus at a level reads the nearest count, which is no fault.
+    for (levels, nearest) in [
+        (["30.008", "56.008"], [1500, 2800]),
+        (["30.012", "56.012"], [1501, 2801]),
+    ] {
+        let [under, over] = levels;
+        let lines = format!("over_voltage = \"{over} V\"\nunder_voltage = \"{under} V\"");
+        assert_eq!(counts(&lines), Ok(nearest));
+    }
     assert_eq!(
         counts("over_voltage = \"0 V\"\nunder_voltage = \"0 V\""),
         Ok([0, u16::MAX])

@@ -467,9 +467,9 @@ impl<W: Word> BitTrue<W> {
             Reference::Proportional => shape.map(|shape| k.shape_product.floor_product(shape, j)),
         };
         let mut weakening = self.state.weakening;
-        let (j_ref, rise) = match &self.weakening {
+        let (j_ref, changes) = match &self.weakening {
             Some(field) => field.reference(k, [theta_ref, weakening], shape, j, j_ref),
-            None => (j_ref, word(0.0)),
+            None => (j_ref, [word(0.0); 2]),
         };
 
         // 8 EMF
@@ -560,7 +560,7 @@ impl<W: Word> BitTrue<W> {
             past: self.state.past,
         });
         if let Some(field) = &self.weakening {
-            weakening = field.follow(weakening, rise, decision.reach != Reach::Inside);
+            weakening = field.follow(weakening, changes, decision.reach != Reach::Inside);
         }
         let command = match verdict.period {
             Period::Control => decision.command,

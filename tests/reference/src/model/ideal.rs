@@ -212,7 +212,7 @@ impl Ideal {
         f * (2.0 / 3.0 * self.k_t / self.k_phase / f.norm_squared())
     }
 
-    /// The reference turned against the field, and the rise of the angle if the voltage is cut (section
+    /// The reference turned against the field, and rise and fall of the angle if the voltage is cut or not (section
     /// "Field weakening"). `shape`: the current of one ampere along the EMF at the angle `theta`.
     fn weakened(
         &self,
@@ -220,15 +220,20 @@ impl Ideal {
         theta: f64,
         shape: &Vector2<f64>,
         current: f64,
-    ) -> (Vector2<f64>, f64) {
+    ) -> (Vector2<f64>, [f64; 2]) {
         let turn = self.state.weakening;
         let sign = if current >= 0.0 { 1.0 } else { -1.0 };
         let share = 1.0 - turn * turn * (square - fourth * turn * turn);
         let surplus = (self.max_current * share - current.abs()).max(0.0);
         let turned = self.proportional(theta + sign * TAU * turn);
         let i_ref = (turned * self.max_current - shape * surplus) * sign;
-        let slower = if surplus > 0.0 { 1.0 } else { 4.0 };
-        (i_ref, WEAKENING_STEP / slower)
+        let slow = WEAKENING_STEP / 4.0;
+        let changes = if surplus > 0.0 {
+            [WEAKENING_STEP, slow]
+        } else {
+            [slow, WEAKENING_STEP]
+        };
+        (i_ref, changes)
     }
 
     /// Sets the current set-point, ampere; saturates at the largest current.
@@ -456,11 +461,11 @@ impl Ideal {
             }
             Reference::Proportional => shape * current,
         };
-        let (i_ref, rise) = match self.weakening_share {
+        let (i_ref, [rise, fall]) = match self.weakening_share {
             Some(share) if self.state.weakening > 0.0 => {
                 self.weakened(share, theta + target, &shape, current)
             }
-            _ => (i_ref, WEAKENING_STEP),
+            _ => (i_ref, [WEAKENING_STEP; 2]),
         };
 
         // 8 EMF
@@ -565,7 +570,7 @@ impl Ideal {
 
         let weakening = if self.weakening_share.is_some() {
             let change = match decision.reach {
-                Reach::Inside => -WEAKENING_STEP,
+                Reach::Inside => -fall,
                 Reach::Outside | Reach::PastReach => rise,
             };
             (self.state.weakening + change).clamp(0.0, MOST_TURN)

@@ -134,6 +134,27 @@ c:\tpop\t{{r4, pc}}
 }
 
 #[test]
+fn a_jump_to_a_register_reaches_every_address_of_the_table_behind_it() {
+    let text = "\
+0:\tldr\tr6, [r6, r1]
+2:\tmov\tpc, r6
+4:\t.word\t0x0000000d
+8:\t.word\t0x0000000f
+c:\tbx\tlr
+e:\tadds\tr0, #1
+10:\tpop\t{r4, pc}
+";
+    let table = [0xd_u8, 0, 0, 0, 0xf, 0, 0, 0];
+    let image = Image::of_functions(Isa::Thumb, &[("f", 0..18)], (4, table.to_vec()));
+    let longest = program(&image, text).longest("f");
+    assert_eq!(
+        longest.ok().map(|longest| longest.instructions),
+        Some(4),
+        "both ways"
+    );
+}
+
+#[test]
 fn jumps_to_addresses_from_memory_are_refused() {
     for jump in ["mov\tpc, r3", "blx\tr3", "bx\tr3", "ldr\tpc, [r3, r0]"] {
         let text = format!("0:\t{jump}\n4:\tbx\tlr\n");

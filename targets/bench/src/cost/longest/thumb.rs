@@ -61,6 +61,9 @@ pub fn flow(image: &Image, listing: &Listing, at: u32, line: &Line) -> Result<Fl
             condition: Some(condition),
             ..leaving(image, listing, at, line, base)?.or_on()
         },
+        None if mnemonic == "mov" && line.operands().next() == Some("pc") => {
+            addresses(image, listing, at)?
+        }
         None => plain(line)?,
     };
     Ok(Flow {
@@ -117,6 +120,25 @@ fn unknown(line: &Line) -> String {
         "`{} {}` jumps to an address from memory or a register, which is not followed",
         line.mnemonic, line.operands
     )
+}
+
+/// Targets of a jump to a register, which ARMv6-M loads from a table of addresses behind the instruction.
+fn addresses(image: &Image, listing: &Listing, at: u32) -> Result<Flow, String> {
+    let begin = (at + 2).next_multiple_of(4);
+    let end = listing
+        .code_after(at)
+        .ok_or("no instruction behind the table")?;
+    let jumps = (begin..end).step_by(4).map(|entry| {
+        let [low, high] = [entry, entry + 2].map(|at| image.half(at).map(u32::from));
+        // The lowest bit tells Thumb.
+        Some((low? | high? << 16) & !1)
+    });
+    let jumps: Option<Vec<u32>> = jumps.collect();
+    let jumps = jumps.filter(|jumps| !jumps.is_empty());
+    Ok(Flow {
+        jumps: jumps.ok_or("the table cannot be read")?,
+        ..Flow::default()
+    })
 }
 
 /// Targets of TBB and TBH, whose table of half distances, in entries of `width` bytes, lies behind

@@ -48,7 +48,7 @@ impl<W: Word> FieldWeakening<W> {
         }))
     }
 
-    /// The reference, and the rise of the angle if the voltage is cut: `along` is the reference along the EMF,
+    /// The reference, and rise and fall of the angle if the voltage is cut or not: `along` is the reference along the EMF,
     /// `shape` that of one ampere, at the angle `theta`.
     #[inline]
     pub fn reference(
@@ -58,10 +58,10 @@ impl<W: Word> FieldWeakening<W> {
         shape: [W; 2],
         j: W,
         along: [W; 2],
-    ) -> ([W; 2], W) {
+    ) -> ([W; 2], [W; 2]) {
         let step: W = word(self.step);
         if angle <= 0.0 {
-            return (along, step);
+            return (along, [step; 2]);
         }
         let pushes = j >= 0.0;
         let turned = k.shape.both(theta + either(pushes, angle, -angle));
@@ -77,13 +77,17 @@ impl<W: Word> FieldWeakening<W> {
         let slow = floor_shift(step, 2);
         (
             turned.map(|turned| either(pushes, turned, -turned)),
-            either(surplus > 0.0, step, slow),
+            if surplus > 0.0 {
+                [step, slow]
+            } else {
+                [slow, step]
+            },
         )
     }
 
     /// The angle's new value.
     #[inline]
-    pub fn follow(&self, angle: W, rise: W, cut: bool) -> W {
-        within(angle + either(cut, rise, word(-self.step)), 0.0, self.most)
+    pub fn follow(&self, angle: W, [rise, fall]: [W; 2], cut: bool) -> W {
+        within(angle + either(cut, rise, -fall), 0.0, self.most)
     }
 }
