@@ -17,9 +17,9 @@ use crate::spec::{MOST_TURN, share_of_torque};
 
 /// Periods in which the angle rises from none to its greatest while current is left.
 const RISE: f64 = 128.0;
-/// The angle falls so much more slowly while current is left: it then rests where a fifth of the voltages are
-/// cut, which keeps the torque. Once the current is at its greatest it rises so much more slowly: it rests where
-/// four fifths are cut, which makes more torque than a current turned further would.
+/// Binary logarithm of the ratio of the angle's two rates. While current is left the angle falls at the lower one,
+/// and rests where a fifth of the voltages are cut, which keeps the torque. With the greatest current it rises at the
+/// lower one, and rests where four fifths are cut: a current turned further would make less torque.
 const SLOWER: u32 = 2;
 /// Fraction bits of the share of the torque.
 const SHARE_BITS: u32 = 30;

@@ -71,7 +71,7 @@ mod tests {
             reach: 1.0,
             max_current: 40.0,
             bus_current: None,
-            weakens: false,
+            weakening: None,
         };
         let last = last_speed(&drive, 1000.0).expect("is below") * 60.0 / TAU;
         assert!((5300.0..5700.0).contains(&last), "{last}");

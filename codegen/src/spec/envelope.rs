@@ -7,11 +7,12 @@
 //!
 //! with e the mean of the EMF in between. That is linear in the set-point, so each angle and each pair of
 //! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
-//! its two phases; its commutations take more and are left out. Field weakening turns the current where the
-//! voltage ends: the envelope is then that of the best angle.
+//! its two phases; its commutations take more and are left out. Field weakening turns the reference where the
+//! voltage ends: the envelope is that of the best angle at which the bus drives the whole turned shape. Beyond it a
+//! trapezoid still makes torque, with its shape cut.
 
 use super::emf_shape::{phases, proportional_currents, zero_sum_integral};
-use super::weakening::turned_set_point;
+use super::weakening::{share_of_torque, turned_set_point};
 use super::{EmfShape, Reference, Spec};
 use std::f64::consts::FRAC_PI_3;
 
@@ -21,7 +22,7 @@ pub(super) const ANGLES: u32 = 60;
 /// Steps of the search for a speed: to a millionth of the greatest.
 const HALVINGS: u32 = 20;
 
-/// Greatest speed that field weakening is looked at, over that at which the EMF takes all that the legs reach.
+/// Greatest speed at which field weakening is looked at, over that at which the EMF takes all that the legs reach.
 const FASTEST: f64 = 4.0;
 
 /// What the greatest current of a drive depends on, SI units; motor values per phase of the star.
@@ -49,8 +50,8 @@ pub struct Envelope {
     pub max_current: f64,
     /// Greatest current drawn from the bus, ampere.
     pub bus_current: Option<f64>,
-    /// Whether field weakening turns the current where the voltage ends.
-    pub weakens: bool,
+    /// With field weakening, c2 and c4 of the torque that a turned current keeps ([`share_of_torque`]).
+    pub weakening: Option<[f64; 2]>,
 }
 
 /// Voltage between two legs over one period: volt per ampere of set-point, and volt.
@@ -75,8 +76,13 @@ impl Envelope {
             reach: spec.reach_share(),
             max_current: inverter.max_current,
             bus_current: inverter.bus_currents.drawn,
-            weakens: spec.controller.common().field_weakening,
+            weakening: Self::weakening_of(spec),
         }
+    }
+
+    fn weakening_of(spec: &Spec) -> Option<[f64; 2]> {
+        let weakens = spec.controller.common().field_weakening;
+        weakens.then(|| share_of_torque(spec.motor.emf_shape))
     }
 
     /// Torque per ampere of set-point, Nm/A.
@@ -84,8 +90,8 @@ impl Envelope {
         self.emf_constant * self.emf_shape.torque_factor(self.reference)
     }
 
-    /// Greatest motoring torque at a speed in mechanical rad/s, Nm; 0 where the EMF alone takes more than the
-    /// legs reach.
+    /// Greatest motoring torque at a speed in mechanical rad/s, Nm; 0 where the EMF takes more than the legs reach, with
+    /// field weakening at every angle.
     pub fn torque(&self, omega_m: f64) -> f64 {
         self.torque_constant() * self.set_point(omega_m)
     }
@@ -99,7 +105,12 @@ impl Envelope {
             return None;
         }
         let mut held = 0.0;
-        let mut lost = self.idle_speed() * if self.weakens { FASTEST } else { 1.0 };
+        let beyond = if self.weakening.is_some() {
+            FASTEST
+        } else {
+            1.0
+        };
+        let mut lost = beyond * self.idle_speed();
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(held, lost);
             if self.torque(middle) < torque {
@@ -118,15 +129,23 @@ impl Envelope {
 
     /// Greatest set-point at a speed, ampere.
     pub fn set_point(&self, omega_m: f64) -> f64 {
-        let current = self.max_current.min(self.of_voltage(omega_m));
+        let of_voltage = self.of_voltage(omega_m);
+        let current = self.max_current.min(of_voltage);
         let current = self
             .bus_current
             .map_or(current, |bus| current.min(self.of_power(omega_m, bus)));
-        let turned = if self.weakens && current < self.max_current {
-            turned_set_point(self, omega_m)
-        } else {
-            0.0
-        };
+        let turned = self.weakening.filter(|_| of_voltage < self.max_current);
+        let turned = turned.map_or(0.0, |share| {
+            // Backward, a skewed shape is another one.
+            let backward = Self {
+                emf_shape: self.emf_shape.reversed(),
+                ..*self
+            };
+            let of_backward = (backward != *self)
+                .then(|| turned_set_point(&backward, share, omega_m))
+                .unwrap_or(f64::INFINITY);
+            turned_set_point(self, share, omega_m).min(of_backward)
+        });
         current.max(turned).max(0.0)
     }
 
@@ -261,7 +280,7 @@ fn sector() -> impl Iterator<Item = f64> {
 #[cfg(test)]
 mod tests {
     use super::Envelope;
-    use crate::spec::{EmfShape, Reference};
+    use crate::spec::{EmfShape, Reference, share_of_torque};
 
     /// The 660 W motor of the paper at 48 V.
     const DRIVE: Envelope = Envelope {
@@ -278,7 +297,7 @@ mod tests {
         reach: 1.0,
         max_current: 22.0,
         bus_current: None,
-        weakens: false,
+        weakening: None,
     };
 
     fn near(left: f64, right: f64) -> bool {
@@ -373,7 +392,7 @@ mod tests {
         let drive = Envelope {
             emf_shape: EmfShape::Sinusoidal,
             t_s: 1e-7,
-            weakens: true,
+            weakening: Some(share_of_torque(EmfShape::Sinusoidal)),
             ..DRIVE
         };
         for omega_m in [260.0, 300.0, 360.0] {
@@ -402,7 +421,7 @@ mod tests {
         }
         // At a speed beyond, the whole torque's; without weakening the EMF alone ends it.
         let plain = Envelope {
-            weakens: false,
+            weakening: None,
             ..drive
         };
         let (with, without) = (drive.speed(2.0), plain.speed(2.0));

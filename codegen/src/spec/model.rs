@@ -442,7 +442,7 @@ impl InverterSpec {
     }
 
     /// Least and greatest count of the bus ADC without a fault: those nearest to the levels, so that a bus at a level
-    /// does not trip by the ADC's rounding. The greatest count of all is a fault, as the voltage may be any above it.
+    /// does not trip by the rounding of an ADC. The greatest count of all is a fault, as the voltage may be any above it.
     pub fn bus_counts(&self) -> [u16; 2] {
         let BusSource::Measured {
             gain,

@@ -47,7 +47,7 @@ fn exact_share(shape: EmfShape, turn: f64) -> f64 {
 /// Greatest set-point of a drive at a speed in mechanical rad/s, ampere, over the angles by which the reference
 /// turns: at each of them flows the greatest current, less what the set-point does not ask of its part along the
 /// EMF. Negative where no angle keeps the voltages within what the legs reach.
-pub(super) fn turned_set_point(drive: &Envelope, omega_m: f64) -> f64 {
+pub(super) fn turned_set_point(drive: &Envelope, share: [f64; 2], omega_m: f64) -> f64 {
     let turn = omega_m * drive.pole_pairs * drive.t_s;
     let degrees = 6 * SECTOR;
     // The angles of a sector are whole degrees, so that a turned current is another row of a table.
@@ -71,7 +71,7 @@ pub(super) fn turned_set_point(drive: &Envelope, omega_m: f64) -> f64 {
             phase_pairs(|x| omega_m * emf[x])
         })
         .collect();
-    let [square, fourth] = share_of_torque(drive.emf_shape);
+    let [square, fourth] = share;
     let most = (MOST_TURN * f64::from(degrees)).round() as usize;
     let reach = drive.line_voltage();
     let of_turn = |ahead: usize| {

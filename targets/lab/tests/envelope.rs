@@ -91,7 +91,7 @@ fn no_profile_has_more_torque_than_the_bound() {
         reach: 1.0,
         max_current: peak,
         bus_current: None,
-        weakens: false,
+        weakening: None,
     };
     for (speed, at_20, at_22) in [
         (2400.0, 3.20, 3.48),

@@ -85,7 +85,7 @@ fn the_torque_of_a_weakened_envelope_is_reached_within_two_percent() {
         let weakened = drive(motor, None, "pdcc:field_weakening=on");
         let envelope = Envelope::of(&weakened.spec);
         let plain = Envelope {
-            weakens: false,
+            weakening: None,
             ..envelope
         };
         let lasts = plain.speed(weakened.demand()).expect("is held");

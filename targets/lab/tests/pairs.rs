@@ -14,7 +14,7 @@ const SPEEDS: [f64; 3] = [0.1, 0.75, 1.0];
 type Change = fn(&mut PlantOptions, &Prepared);
 
 /// Disturbances; two of one kind, which is their first word, make no pair.
-const DISTURBANCES: [(&str, Change); 15] = [
+const DISTURBANCES: [(&str, Change); 16] = [
     ("none", |_, _| ()),
     ("R x 0.5", |plant, _| plant.scale_r = Some(0.5)),
     ("R x 2", |plant, _| plant.scale_r = Some(2.0)),
@@ -42,6 +42,10 @@ const DISTURBANCES: [(&str, Change); 15] = [
             0.0
         };
         plant.hall_error = Some([5.0, others, others]);
+    }),
+    ("sensors 5 deg apart", |plant, drive| {
+        let is_one = drive.spec.angle_sensor().is_some();
+        plant.hall_error = Some(if is_one { [-5.0; 3] } else { [5.0, -5.0, 0.0] });
     }),
     ("ADC 0.5 % of the range off", |plant, drive| {
         let inverter = &drive.spec.inverter;

@@ -204,7 +204,7 @@ fn envelope(motor: &MotorSpec, inverter: &Inverter, reference: Reference) -> Opt
         reach: 1.0,
         max_current: f64::INFINITY,
         bus_current: None,
-        weakens: false,
+        weakening: None,
     })
 }
 

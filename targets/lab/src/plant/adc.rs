@@ -35,8 +35,8 @@ const ROUNDING: f64 = 1e-12;
 const TIME_CONSTANTS: f64 = 5.0;
 
 /// What a sensor in a low leg sees of its phase's current, and whether it has settled; `held_for`: how long the
-/// leg has been as it is, after a `dead_time`. It sees nothing of what flows through the upper switch or diode,
-/// and approaches what the lower switch takes over from them.
+/// leg's switches have been as they are; `dead_time`: for how long both were off before. It sees nothing of what flows
+/// through the upper switch or diode, and approaches what the lower ones take over.
 pub(super) fn seen(
     low_side: LowSide,
     (gate, held_for): (Gate, f64),
@@ -44,19 +44,19 @@ pub(super) fn seen(
     current: f64,
 ) -> (f64, bool) {
     // The lower diode conducts what flows into the motor.
-    let of_diode = current.max(0.0);
-    match gate {
-        Gate::Lower if held_for >= low_side.settling - ROUNDING => (current, true),
-        Gate::Lower => {
-            let before = if dead_time > 0.0 { of_diode } else { 0.0 };
-            let approached = |time: f64| -(-TIME_CONSTANTS * time / low_side.settling).exp_m1();
-            let share = approached(held_for) / approached(low_side.settling);
-            let seen = before + share * (current - before);
-            (seen, seen == current)
-        }
-        Gate::Off => (of_diode, of_diode == current),
-        Gate::Upper => (0.0, current == 0.0),
+    let into_motor = current > 0.0;
+    let conducts_for = match gate {
+        Gate::Lower if into_motor => held_for + dead_time,
+        Gate::Off if into_motor => held_for,
+        Gate::Lower => held_for,
+        Gate::Off | Gate::Upper => return (0.0, current == 0.0),
+    };
+    if conducts_for >= low_side.settling - ROUNDING {
+        return (current, true);
     }
+    let approached = |time: f64| -(-TIME_CONSTANTS * time / low_side.settling).exp_m1();
+    let share = approached(conducts_for) / approached(low_side.settling);
+    (share * current, false)
 }
 
 /// Whether a leg's lower switch stays on for `time` seconds behind the start of a period with this
@@ -109,6 +109,30 @@ mod tests {
         assert_eq!(convert(&inverting, 1.0), 1998);
         assert_eq!(convert(&AdcChannel::bipolar(12, 40.0), 40.0), 4095);
         assert_eq!(convert(&AdcChannel::bipolar(16, 40.0), -40.0), 0);
+    }
+
+    #[test]
+    fn a_sensor_in_a_low_leg_approaches_what_the_lower_switch_and_diode_conduct() {
+        let low_side = LowSide {
+            settling: 1e-6,
+            aperture: 0.0,
+        };
+        let seen = |gate, held_for, dead_time, current| {
+            super::seen(low_side, (gate, held_for), dead_time, current)
+        };
+        assert_eq!(seen(Gate::Lower, 1e-6, 0.0, -8.0), (-8.0, true));
+        assert_eq!(seen(Gate::Upper, 5e-6, 0.0, -8.0), (0.0, false));
+        // The upper diode conducts what flows out of the motor.
+        assert_eq!(seen(Gate::Off, 5e-6, 0.5e-6, -8.0), (0.0, false));
+        assert_eq!(seen(Gate::Off, 5e-6, 0.5e-6, 8.0), (8.0, true));
+        assert_eq!(seen(Gate::Lower, 0.5e-6, 0.5e-6, 8.0), (8.0, true));
+        let (early, settled) = seen(Gate::Lower, 0.5e-6, 0.5e-6, -8.0);
+        assert!(!settled && (-7.4..-7.3).contains(&early), "{early}");
+        let (earlier, _) = seen(Gate::Lower, 1e-9, 0.5e-6, -8.0);
+        assert!((-0.05..0.0).contains(&earlier), "{earlier}");
+        // No step at the end.
+        let (last, _) = seen(Gate::Lower, 0.999e-6, 0.0, -8.0);
+        assert!((last + 8.0).abs() < 0.001, "{last}");
     }
 
     #[test]

@@ -244,7 +244,7 @@ impl Plant {
     /// What a channel's sensor shows of its phase's current, and whether that is the current, not cut
     /// short by the next command: the one that flows at its instant, or the one at the turning point, which a
     /// controller wants. Where legs were off until then no current flows, and a sensor that has not settled
-    /// says so rightly.
+    /// shows that, which is right.
     fn read(&mut self, place: usize, next: Legs) -> (f64, bool) {
         let (instant, phase) = (self.params.adc[place].instant, self.params.sensed[place]);
         let leg = if instant < 0.0 {

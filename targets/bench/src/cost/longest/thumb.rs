@@ -62,7 +62,7 @@ pub fn flow(image: &Image, listing: &Listing, at: u32, line: &Line) -> Result<Fl
             ..leaving(image, listing, at, line, base)?.or_on()
         },
         None if mnemonic == "mov" && line.operands().next() == Some("pc") => {
-            addresses(image, listing, at)?
+            addresses(image, listing, at, line)?
         }
         None => plain(line)?,
     };
@@ -123,7 +123,7 @@ fn unknown(line: &Line) -> String {
 }
 
 /// Targets of a jump to a register, which ARMv6-M loads from a table of addresses behind the instruction.
-fn addresses(image: &Image, listing: &Listing, at: u32) -> Result<Flow, String> {
+fn addresses(image: &Image, listing: &Listing, at: u32, line: &Line) -> Result<Flow, String> {
     let begin = (at + 2).next_multiple_of(4);
     let end = listing
         .code_after(at)
@@ -136,7 +136,7 @@ fn addresses(image: &Image, listing: &Listing, at: u32) -> Result<Flow, String> 
     let jumps: Option<Vec<u32>> = jumps.collect();
     let jumps = jumps.filter(|jumps| !jumps.is_empty());
     Ok(Flow {
-        jumps: jumps.ok_or("the table cannot be read")?,
+        jumps: jumps.ok_or_else(|| unknown(line))?,
         ..Flow::default()
     })
 }

@@ -121,8 +121,14 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
     } else {
         bus
     };
+    let weakens = drive.spec.controller.common().field_weakening;
+    let lasts = if weakens {
+        "with field weakening whole"
+    } else {
+        "whole current"
+    };
     format!(
-        "rated speed takes {}, L included, of {reach}; whole current to {} rpm",
+        "rated speed takes {}, L included, of {reach}; {lasts} to {} rpm",
         engineering(judgement.rating_v, "V"),
         judgement.envelope_rpm.floor(),
     )
