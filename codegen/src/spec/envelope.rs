@@ -141,9 +141,11 @@ impl Envelope {
                 emf_shape: self.emf_shape.reversed(),
                 ..*self
             };
-            let of_backward = (backward != *self)
-                .then(|| turned_set_point(&backward, share, omega_m))
-                .unwrap_or(f64::INFINITY);
+            let of_backward = if backward == *self {
+                f64::INFINITY
+            } else {
+                turned_set_point(&backward, share, omega_m)
+            };
             turned_set_point(self, share, omega_m).min(of_backward)
         });
         current.max(turned).max(0.0)
