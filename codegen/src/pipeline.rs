@@ -167,12 +167,10 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
             speed: envelope.speed(torque),
             bus,
             raised: Some(taken).filter(|taken| {
-                // A turned current takes less, and no closed form tells how much.
-                if envelope.weakening.is_some() {
-                    return false;
-                }
                 let is_of_board = origins.board_bus().is_none_or(|most| *taken <= most);
-                is_of_board && spec.inverter.bus.takes(*taken)
+                // A turned current takes less than `taken`.
+                let is_turned = envelope.weakening.is_some();
+                !is_turned && is_of_board && spec.inverter.bus.takes(*taken)
             }),
         };
         let given = origins.given(SPEED, "");

@@ -50,7 +50,7 @@ pub struct Envelope {
     pub max_current: f64,
     /// Greatest current drawn from the bus, ampere.
     pub bus_current: Option<f64>,
-    /// With field weakening, c2 and c4 of the torque that a turned current keeps ([`share_of_torque`]).
+    /// With field weakening, what a turned current keeps of its torque: c2 and c4 of [`share_of_torque`].
     pub weakening: Option<[f64; 2]>,
 }
 
@@ -64,6 +64,7 @@ impl Envelope {
     /// Of a drive at its nominal bus voltage.
     pub fn of(spec: &Spec) -> Self {
         let (motor, inverter) = (&spec.motor, &spec.inverter);
+        let weakens = spec.controller.common().field_weakening;
         Self {
             emf_shape: motor.emf_shape,
             reference: spec.controller.common().reference,
@@ -76,13 +77,8 @@ impl Envelope {
             reach: spec.reach_share(),
             max_current: inverter.max_current,
             bus_current: inverter.bus_currents.drawn,
-            weakening: Self::weakening_of(spec),
+            weakening: weakens.then(|| share_of_torque(motor.emf_shape)),
         }
-    }
-
-    fn weakening_of(spec: &Spec) -> Option<[f64; 2]> {
-        let weakens = spec.controller.common().field_weakening;
-        weakens.then(|| share_of_torque(spec.motor.emf_shape))
     }
 
     /// Torque per ampere of set-point, Nm/A.

@@ -284,8 +284,7 @@ fn beyond_drive(
         ));
     }
     // Against the field a trapezoid makes more than the bus drives whole.
-    let is_held = drive.spec.controller.common().field_weakening
-        && made.is_some_and(|made| made / demand >= CUT);
+    let is_held = envelope.weakening.is_some() && made.is_some_and(|made| made / demand >= CUT);
     (is_motoring && !is_held && demand.abs() > within * BEYOND).then(|| {
         format!(
             "{} Nm at {rpm} rpm: the bus of {} drives the whole current only up to {} Nm there, beyond which it is cut; `hexagen limit {}` prints up to which speed the torque lasts",

@@ -4,8 +4,8 @@
 //! quarter to half a turn per period: an unstable loop oscillates with a period of two to four
 //! samples, and grows until the legs bound its voltage. Commutations, speed and load change the voltage more
 //! slowly, or rarely. The second difference extracts the oscillation, and the median rejects single
-//! disturbances. (The current tells less: where the inductance is small, sensors out of place make it swing
-//! by a quarter of its amplitude at a few percent of the bus, in a loop that is stable.)
+//! disturbances. The current tells less. With a small inductance, sensors out of place make the current of a
+//! stable loop swing by a quarter of its amplitude, and its voltage by a few percent of the bus.
 
 use super::PeriodRow;
 
