@@ -123,7 +123,7 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
     };
     let weakens = drive.spec.controller.common().field_weakening;
     let lasts = if weakens {
-        "with field weakening whole"
+        "whole turned current"
     } else {
         "whole current"
     };
