@@ -6,6 +6,7 @@
 
 use super::alternatives::same_quantity;
 pub use super::basis::Basis;
+use super::schema;
 use super::units::Unit;
 use crate::diagnostics::{Diagnostic, Location, catalogue};
 use std::fmt;
@@ -157,10 +158,18 @@ impl SpecAst {
     }
 
     /// Reports a section that does not exist, and does not report the one meant as missing.
-    pub(super) fn unknown_section(&mut self, at: &Location, name: &str, known: &[&str]) {
+    /// `fields`: the names that stand in it, by which it is known where its own name says nothing.
+    pub(super) fn unknown_section(
+        &mut self,
+        at: &Location,
+        name: &str,
+        known: &[&str],
+        fields: &[&str],
+    ) {
+        let of_fields = schema::section_of_most(fields);
         self.malformed
-            .push(catalogue::unknown_section(at, name, known));
-        if let Some(meant) = catalogue::nearest(name, known) {
+            .push(catalogue::unknown_section(at, name, known, of_fields));
+        if let Some(meant) = catalogue::nearest(name, known).or(of_fields) {
             self.excuse(meant);
         }
     }
@@ -169,7 +178,8 @@ impl SpecAst {
     pub(super) fn excuse(&mut self, name: &str) {
         match name {
             "motor" => self.motor.incomplete = true,
-            "inverter" => self.inverter.incomplete = true,
+            // What a board would state is not missing.
+            "inverter" | "board" => self.inverter.incomplete = true,
             "controller" => self.controller.incomplete = true,
             _ => {}
         }

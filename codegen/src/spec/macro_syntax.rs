@@ -305,19 +305,35 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
         }
         ("motor" | "board" | "inverter", _) => return Err(expected_section(value, &name)),
         _ => {
-            input
-                .ast
-                .unknown_section(&at, &name, &["motor", "board", "inverter", "controller"]);
+            let known = ["motor", "board", "inverter", "controller"];
+            let fields = field_names(value);
+            let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
+            input.ast.unknown_section(&at, &name, &known, &fields);
         }
     }
     Ok(())
+}
+
+/// Names before colons in a section's braces.
+fn field_names(value: &[TokenTree]) -> Vec<String> {
+    let [TokenTree::Group(group)] = value else {
+        return vec![];
+    };
+    let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
+    let names = tokens.windows(2).filter_map(|pair| match pair {
+        [TokenTree::Ident(name), TokenTree::Punct(colon)] if colon.as_char() == ':' => {
+            Some(name.to_string())
+        }
+        _ => None,
+    });
+    names.collect()
 }
 
 fn expected_section(value: &[TokenTree], name: &str) -> Diagnostic {
     let wanted = match name {
         "motor" => "`motor` takes braces with fields or the path of a motor file",
         "board" => {
-            "`board` takes the name of a board or the path of its file, in quotes, as in `board: \"vesc-4\"`"
+            "`board` takes the name of a board or the path of its file, in quotes, as in `board: \"vesc-4\"`; the fields of an inverter of your own stand in `inverter`"
         }
         "controller" => {
             "`controller` takes the name of a controller and braces with its options, as in `controller: pdcc { emf: model }`"

@@ -184,6 +184,17 @@ pub fn section_of(name: &str) -> Option<&'static str> {
         .map(|(section, _)| section)
 }
 
+/// The section that has most of some names, if one has any.
+pub(crate) fn section_of_most(names: &[&str]) -> Option<&'static str> {
+    let count = |section: &&str| {
+        let of_names = names.iter().filter_map(|name| section_of(name));
+        of_names.filter(|of| of == section).count()
+    };
+    let sections = ["motor", "inverter", "controller"].into_iter();
+    let most = sections.max_by_key(count)?;
+    (count(&most) > 0).then_some(most)
+}
+
 /// Reports a field of another section than `section`; returns whether it did.
 pub(crate) fn misplaced(section: &str, field: &Field, errors: &mut Collector) -> bool {
     let right = section_of(&field.name);

@@ -52,7 +52,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
                 ast.malformed.push(catalogue::not_a_section(&at, name));
                 ast.excuse(name);
             } else {
-                ast.unknown_section(&at, name, &SECTIONS);
+                ast.unknown_section(&at, name, &SECTIONS, &[]);
             }
             continue;
         };
@@ -66,7 +66,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             "controller" => file.read_fields(&mut ast.controller, at, table),
             "assumed" => file.read_assumed(&mut ast, table, &["motor", "inverter"]),
             "source" => file.read_source(&mut ast, table),
-            _ => ast.unknown_section(&at, name, &SECTIONS),
+            _ => ast.unknown_section(&at, name, &SECTIONS, &keys(table)),
         }
     }
     // `name` stands in `[motor]` but belongs to the drive.
@@ -121,6 +121,7 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
                             &field.name_location,
                             &format!("board.{name}"),
                             &["board.description"],
+                            None,
                         )),
                     }
                 }
@@ -135,7 +136,10 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
             (name, None) if BOARD_SECTIONS.contains(&name) => {
                 ast.malformed.push(catalogue::not_a_section(&at, name));
             }
-            _ => ast.unknown_section(&at, name, &BOARD_SECTIONS),
+            (name, table) => {
+                let fields = table.map_or(vec![], keys);
+                ast.unknown_section(&at, name, &BOARD_SECTIONS, &fields);
+            }
         }
     }
     if document.get("board").is_none() && document.get("inverter").is_none() {
@@ -236,7 +240,7 @@ impl File<'_> {
                 "inverter" => &mut ast.inverter,
                 _ => {
                     ast.malformed
-                        .push(catalogue::unknown_section(&at, name, known));
+                        .push(catalogue::unknown_section(&at, name, known, None));
                     continue;
                 }
             };
@@ -397,6 +401,11 @@ impl File<'_> {
             .and_then(|range| self.text.get(range))
             .unwrap_or_default()
     }
+}
+
+/// The names in a section.
+fn keys(table: &dyn TableLike) -> Vec<&str> {
+    table.iter().map(|(name, _)| name).collect()
 }
 
 /// Name of a type for a file without a name of its own: `motors/rear-hub.toml` is `RearHub`.

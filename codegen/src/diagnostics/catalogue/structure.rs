@@ -8,15 +8,28 @@ pub fn syntax(at: &Location, what: &str) -> Diagnostic {
     Diagnostic::new(Code::Syntax, at, what)
 }
 
-/// A section that does not exist.
-pub fn unknown_section(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
+/// A section that does not exist; `of_fields`: the one whose fields it has.
+pub fn unknown_section(
+    at: &Location,
+    name: &str,
+    known: &[&str],
+    of_fields: Option<&str>,
+) -> Diagnostic {
+    let mut advice = did_you_mean(name, known);
+    if let Some(right) = of_fields.filter(|_| advice.is_empty()) {
+        advice = format!("; its fields are those of `{right}`, so call it that");
+        if name == "board" {
+            advice.push_str(
+                ", or name a board of the library above the sections, as `board: vesc-4`",
+            );
+        }
+    }
     Diagnostic::new(
         Code::UnknownSection,
         at,
         format!(
-            "unknown section `{name}`; the sections are {}{}",
+            "unknown section `{name}`; the sections are {}{advice}",
             list(known, "and"),
-            did_you_mean(name, known)
         ),
     )
 }
