@@ -114,6 +114,22 @@ impl FieldRule<'_> {
             .collect()
     }
 
+    /// The bases that a field's value takes with their meanings, those that say only what a wave's number is among them.
+    pub fn bases(self) -> &'static [(Basis, &'static str)] {
+        match self.name {
+            "speed_constant" => &[
+                (Basis::BlockMean, "mean over block commutation"),
+                (Basis::Peak, "amplitude between two terminals"),
+                (Basis::Rms, "root mean square between two terminals"),
+            ],
+            "rated_current" => &[
+                (Basis::Peak, "of the block or sine wave"),
+                (Basis::Rms, "of the phase current"),
+            ],
+            _ => self.references(),
+        }
+    }
+
     /// The possible bases of the field's value with their meanings; empty where there is no choice.
     pub fn references(self) -> &'static [(Basis, &'static str)] {
         match self.name {

@@ -5,7 +5,7 @@
 
 use super::ast::{Basis, Number, Value};
 use super::field_rule::FieldRule;
-use super::units::{Unit, in_letters};
+use super::units::{Dimension, Unit, in_letters};
 use crate::diagnostics::{Diagnostic, Location, catalogue};
 
 #[derive(Clone, Debug, PartialEq)]
@@ -215,7 +215,7 @@ fn read_unit(
     }
     let longest = (1..=lexemes.len())
         .rev()
-        .find_map(|end| Some((Unit::parse(&written(&lexemes[..end]))?, &lexemes[end..])));
+        .find_map(|end| Some((unit_of(field, &written(&lexemes[..end]))?, &lexemes[end..])));
     let (unit, rest) = match longest {
         Some((unit, rest)) => (Some(unit), rest),
         None => (None, lexemes),
@@ -241,7 +241,10 @@ fn read_unit(
         ));
     }
     let takes_basis = !field.references().is_empty();
-    if unit.is_some() && takes_basis && rest.iter().all(is_part_of_word) {
+    let is_whole = unit
+        .as_ref()
+        .is_some_and(|(unit, _)| takes_basis || field.dimensions().contains(&unit.dimension));
+    if is_whole && !field.bases().is_empty() && rest.iter().all(is_part_of_word) {
         let (word, remedy) = basis_remedy(field, rest);
         return Err(catalogue::unknown_basis(
             at,
@@ -267,6 +270,17 @@ fn read_unit(
         nearest,
         &right,
     ))
+}
+
+/// The unit of a spelling, and the basis that it says. `KV`, in any case, is what makers of outrunners call rpm/V.
+fn unit_of(field: FieldRule, symbol: &str) -> Option<(Unit, Option<Basis>)> {
+    let is_speed_constant = field.dimensions().contains(&Dimension::SpeedConstant);
+    if is_speed_constant && symbol.eq_ignore_ascii_case("kv") {
+        let mut unit = Unit::from_symbol("rpm/V")?;
+        symbol.clone_into(&mut unit.symbol);
+        return Some((unit, None));
+    }
+    Unit::parse(symbol)
 }
 
 /// The first signs that mean nothing where they stand: a product's stands between two words, a
@@ -404,7 +418,7 @@ fn is_part_of_word(lexeme: &Lexeme) -> bool {
 /// What is unknown of the words behind a unit, and the choice that there is.
 fn basis_remedy(field: FieldRule, lexemes: &[Lexeme]) -> (String, String) {
     let words: Vec<(&str, &str)> = field
-        .references()
+        .bases()
         .iter()
         .map(|(basis, meaning)| (basis.word(), *meaning))
         .collect();

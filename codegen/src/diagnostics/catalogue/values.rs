@@ -190,7 +190,7 @@ pub fn missing_basis(
     )
 }
 
-/// An unknown word after the unit; `remedy` is a clause.
+/// An unknown word after the unit, where a basis stands; `remedy` is a clause.
 pub fn unknown_basis(
     at: &Location,
     field: &str,
@@ -201,7 +201,7 @@ pub fn unknown_basis(
     Diagnostic::new(
         Code::UnknownWord,
         at,
-        format!("`{field}`: {given} has the unknown word `{word}`; {remedy}"),
+        format!("`{field}`: {given} has the unknown basis `{word}`; {remedy}"),
     )
 }
 

@@ -223,6 +223,17 @@ fn torque_and_speed_constants_state_the_emf() {
                 30.0 / PI / (block * phase),
                 "rpm/V block_mean",
             ),
+            (
+                "speed_constant",
+                30.0 / PI / (block * phase),
+                "KV block_mean",
+            ),
+            ("speed_constant", 30.0 / PI / (line_peak * phase), "kV peak"),
+            (
+                "back_emf",
+                30.0 / PI / (line_peak * phase),
+                "Kv line_to_line peak",
+            ),
         ] {
             let emf = "back_emf = \"0.1648 V/(rad/s) line_to_line peak\"";
             let text = COMPLETE
