@@ -238,15 +238,26 @@ pub fn exclusive_fields(at: &Location, name: &str, other_at: &Location, other: &
     .with_note(other_at, format!("`{other}` is given here"))
 }
 
-/// A field that has an effect only with another setting, `condition`, e.g. ``v_bus: measured``.
-pub fn needless_field(at: &Location, name: &str, given: &str, condition: &str) -> Diagnostic {
-    Diagnostic::new(
+/// A field that has an effect only with another setting, `condition`, e.g. ``v_bus: measured``; `contrary`: name, value
+/// and place of what is stated in its place.
+pub fn needless_field(
+    at: &Location,
+    name: &str,
+    given: &str,
+    condition: &str,
+    contrary: Option<(&str, &str, &Location)>,
+) -> Diagnostic {
+    let error = Diagnostic::new(
         Code::DependentField,
         at,
         format!(
             "`{name}`: {given} has an effect only with `{condition}`; set that or remove `{name}`"
         ),
-    )
+    );
+    match contrary {
+        Some((other, value, at)) => error.with_note(at, format!("`{other}: {value}`")),
+        None => error,
+    }
 }
 
 /// A field that the value of a second field needs: its section, its name and an example of its value.

@@ -126,7 +126,12 @@ fn check_torque_learning(
 ) {
     if inverter.bus == Some(BusSource::Fixed) {
         let why = "a bus that is off its stated voltage would be taken for another torque constant";
-        refuse(reader, TORQUE_LEARNING, ["v_bus", "fixed"], why, errors);
+        errors.push(catalogue::option_without_effect(
+            &reader.part(TORQUE_LEARNING, String::new),
+            ["v_bus", "fixed"],
+            inverter.bus_at.as_ref(),
+            why,
+        ));
     }
     if weakens {
         let why = "its current against the field looks like another torque constant";

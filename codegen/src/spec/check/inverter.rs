@@ -2,7 +2,7 @@
 
 use super::sensing::{self, Sensing};
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, at_least, at_most, engineering};
+use crate::diagnostics::{Collector, Location, at_least, at_most, engineering};
 use crate::spec::model::period_within;
 use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
@@ -14,6 +14,8 @@ use crate::spec::{BusSource, Fade, SensedPhases};
 pub(super) struct Inverter<'a> {
     pub v_bus: Option<Given<'a>>,
     pub bus: Option<BusSource>,
+    /// Where `v_bus` is stated.
+    pub bus_at: Option<Location>,
     /// `f_pwm` or `sampling_time` as written.
     pub period: Option<Given<'a>>,
     /// PWM periods per control period.
@@ -83,6 +85,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
     Inverter {
         v_bus,
         bus,
+        bus_at: reader.field("v_bus").map(|field| field.location.clone()),
         period,
         pwm_per_control,
         t_s,
@@ -395,7 +398,7 @@ fn read_gains(
     let Some(shunt) = SHUNT.iter().find_map(|name| reader.field(name)) else {
         if let Some(swing) = &swing {
             let (at, given) = (&swing.part.location, &swing.part.given);
-            errors.push(catalogue::needless_field(at, SWING, given, "shunt"));
+            errors.push(catalogue::needless_field(at, SWING, given, "shunt", None));
         }
         if ["adc_range", "adc_gain"]
             .iter()

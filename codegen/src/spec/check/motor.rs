@@ -222,6 +222,7 @@ fn read_nominal_voltage<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Opti
             "nominal_voltage",
             &given.part.given,
             "no_load_speed: 5000 rpm",
+            None,
         ));
     }
     Some(given)

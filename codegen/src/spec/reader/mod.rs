@@ -118,10 +118,18 @@ impl<'a> Reader<'a> {
 
     /// Reports fields that have an effect only with another `setting`.
     pub fn refuse_without(&self, errors: &mut Collector, setting: &str, names: &[&str]) {
+        let contrary = setting.split_once(": ");
+        let contrary = contrary.and_then(|(name, _)| self.field(name));
+        let contrary = contrary.map(|field| (field, field.value.to_string()));
         for name in names {
             if let Some(field) = self.field(name) {
                 let (at, given) = (&field.location, field.value.to_string());
-                errors.push(catalogue::needless_field(at, name, &given, setting));
+                let contrary = contrary.as_ref();
+                let contrary = contrary
+                    .map(|(other, value)| (other.name.as_str(), value.as_str(), &other.location));
+                errors.push(catalogue::needless_field(
+                    at, name, &given, setting, contrary,
+                ));
             }
         }
     }
