@@ -3,7 +3,7 @@
 use super::internal;
 use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, Location, at_least, at_most, engineering, list, percent, rpm_at_most,
+    Code, Diagnostic, Location, at_least, at_most, engineering, list, percent, rpm, rpm_at_most,
     significant,
 };
 use std::fmt;
@@ -95,12 +95,14 @@ impl fmt::Display for BusRemedy {
 }
 
 /// What is known of the EMF as stated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stated {
     /// Whether another field agrees with it.
     pub is_confirmed: bool,
     /// Whether it is stated as a peak.
     pub is_peak: bool,
+    /// Speed of the shaft with which the rating fits the bus, if the stated one is electrical, mechanical rad/s.
+    pub shaft_speed: Option<f64>,
 }
 
 /// Below this share of the bus a resistive drop may be right; beyond this multiple of it an EMF is
@@ -143,6 +145,7 @@ pub fn bus_too_low(
     Stated {
         is_confirmed,
         is_peak,
+        shaft_speed,
     }: Stated,
     (raised, remedy): (Option<f64>, BusRemedy),
 ) -> Diagnostic {
@@ -157,8 +160,17 @@ pub fn bus_too_low(
     } else {
         ""
     };
+    let of_shaft = shaft_speed.map_or_else(String::new, |shaft| {
+        format!(
+            ", give `rated_speed` as {} if {} is an electrical speed (eRPM)",
+            rpm(shaft),
+            speed.given
+        )
+    });
     let culprit = if drop > LIKELY[0] * volts {
         resistance
+    } else if shaft_speed.is_some() {
+        speed
     } else if is_confirmed && emf > 2.0 * volts {
         bus
     } else if !is_confirmed && emf > LIKELY[1] * volts {
@@ -175,7 +187,7 @@ pub fn bus_too_low(
             Code::BusTooLow,
             &culprit.location,
             format!(
-                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and a resistive drop of {}; {raise}{remedy}, or check the bases of `{}` ({}) and `resistance` ({}){trace}",
+                "`{}`: {}: the rating, {} at {}, takes {} of the bus of {}: an EMF of {} line to line and a resistive drop of {}; {raise}{remedy}{of_shaft}, or check the bases of `{}` ({}) and `resistance` ({}){trace}",
                 culprit.field,
                 culprit.given,
                 current.quoted(),

@@ -111,6 +111,9 @@ pub(super) fn check(
     {
         parts.extend(&claim.parts);
     }
+    let is_electrical = fitting
+        .iter()
+        .any(|(other, _)| other.at.field == "no_load_speed");
     let fitting: Vec<(String, String)> = fitting
         .iter()
         .map(|(other, constant)| (other.change.clone(), (first.told)(*constant)))
@@ -131,7 +134,11 @@ pub(super) fn check(
         agreed: &agreed,
         fitting: &fitting,
         voltage: (first.parts[0].field == "no_load_speed" && motor.nominal_voltage.is_none())
-            .then_some("if the speed holds at another voltage, state that as `nominal_voltage`"),
+            .then_some(if is_electrical {
+                "if it is an electrical speed (eRPM), divide it by the pole pairs; if it holds at another voltage, state that as `nominal_voltage`"
+            } else {
+                "if the speed holds at another voltage, state that as `nominal_voltage`"
+            }),
     }));
     true
 }
@@ -337,6 +344,14 @@ fn fitting<'a>(
         let change = format!("`rated_current` as `{word}`");
         let at = &current.part;
         candidates.push((Other { change, at, phase }, constant * phase));
+    }
+    if let (Some(speed), Some(pairs @ 2..)) = (motor.no_load_speed.as_ref(), motor.pole_pairs)
+        && speed.part.field == claim.parts[0].field
+    {
+        let change = "`no_load_speed` as an electrical speed, eRPM".to_owned();
+        let at = &speed.part;
+        let constant = factor * phase / f64::from(pairs);
+        candidates.push((Other { change, at, phase }, constant));
     }
     let claimed = |stated: &&Emf| stated.given.part.field == claim.parts[0].field;
     if let Some(stated) = motor.emf.iter().skip(1).find(claimed) {

@@ -159,8 +159,10 @@ pub(super) fn check_bus(
     };
     let values = [&stated.part, of_drop, &inductance];
     let absurd = catalogue::most_of_absurd([bus.si, raised], voltages, values);
-    // A constant that another field states, too, is right.
-    if let Some(value) = absurd.filter(|value| value.field != stated.part.field || !is_confirmed) {
+    let shaft_speed = shaft_speed(speed.si, whole.pole_pairs, [bus.si, emf, drop]);
+    // A constant that another field states, too, is right, and so it is where an electrical speed makes it too much.
+    let is_right = is_confirmed || shaft_speed.is_some();
+    if let Some(value) = absurd.filter(|value| value.field != stated.part.field || !is_right) {
         let error = catalogue::thousandfold(Code::BusTooLow, value, [bus.si, raised]);
         errors.push(error);
         return Some(());
@@ -172,6 +174,7 @@ pub(super) fn check_bus(
         catalogue::Stated {
             is_confirmed,
             is_peak: stated.basis.contains(&Basis::Peak),
+            shaft_speed,
         },
         (
             Some(raised).filter(|raised| {
@@ -188,6 +191,20 @@ pub(super) fn check_bus(
         ),
     ));
     Some(())
+}
+
+/// EMF of a rating over the bus from which on its speed may be an electrical one: below, it is rather a little too high.
+const ELECTRICAL: f64 = 1.5;
+
+/// Least part of the bus that a rating takes.
+const LEAST_OF_BUS: f64 = 0.2;
+
+/// The shaft's speed, if the stated one is an electrical speed and the rating fits the bus then; in volt: the bus, the EMF
+/// at the stated speed, and the resistive drop.
+fn shaft_speed(stated: f64, pole_pairs: u32, [bus, emf, drop]: [f64; 3]) -> Option<f64> {
+    let pairs = f64::from(pole_pairs);
+    let fits = (LEAST_OF_BUS..=1.0).contains(&((emf / pairs + drop) / bus));
+    (pole_pairs > 1 && emf > ELECTRICAL * bus && fits).then_some(stated / pairs)
 }
 
 /// The envelope of a drive whose legs reach the whole bus: what windows of sensors take is not known yet.
