@@ -112,11 +112,16 @@ pub fn other_name(at: &Location, section: &str, name: &str, remedy: &str) -> Dia
 
 /// A field that belongs to another section.
 pub fn misplaced_field(at: &Location, section: &str, name: &str, right: &str) -> Diagnostic {
-    Diagnostic::new(
-        Code::MisplacedField,
-        at,
-        format!("`{section}` has no field `{name}`; move it to `{right}`"),
-    )
+    let message = match at {
+        // Nothing but a controller and its options can be given there.
+        Location::Variant { .. } => format!(
+            "`{name}` is a field of `{right}`, not an option of the controller; state it in the motor's file, or in the board's"
+        ),
+        Location::Macro(_) | Location::File { .. } => {
+            format!("`{section}` has no field `{name}`; move it to `{right}`")
+        }
+    };
+    Diagnostic::new(Code::MisplacedField, at, message)
 }
 
 /// A field or section given twice.

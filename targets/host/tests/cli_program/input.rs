@@ -41,6 +41,13 @@ fn a_bad_variant_is_told_with_its_column() {
             ],
         ),
         (
+            "pdcc:f_pwm=20kHz",
+            [
+                "argument `pdcc:f_pwm=20kHz`, character 6: error[HX0107]",
+                "`f_pwm` is a field of `inverter`, not an option of the controller",
+            ],
+        ),
+        (
             "pdcc:advance",
             ["argument `pdcc:advance`, character 6: error[HX", "advance"],
         ),
