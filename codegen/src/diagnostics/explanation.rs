@@ -223,10 +223,10 @@ impl Code {
     fn of_drives(self) -> Explanation {
         match self {
             Self::PeriodTooLong => say(
-                "Between two samples the current decays by itself: with R Ts/L above 0.5 a prediction says little.",
+                "Between two samples the current decays by itself: with R Ts/L above 0.5 a prediction says little. Where L/R is above 0.3 s, or so short that no PWM frequency up to 500 kHz would do, it is that of no motor: then not the period is told, but the resistance or the inductance, one of which is likely a thousandfold off.",
                 "f_pwm = \"1 kHz\"",
                 "f_pwm = \"20 kHz\"",
-                "Raise the PWM frequency, or check R and L and their bases.",
+                "Raise the PWM frequency, lower `pwm_per_control`, or check R and L: their numbers, the prefixes of their units (mH for uH, ohm for mohm) and their bases. The message names the value that is likely wrong.",
             ),
             Self::BusTooLow => say(
                 "The line-to-line EMF at rated speed is more than the bus, or with what rated current drops between two terminals more than 125 % of it: the motor cannot turn so fast on it, and probably a value is wrong. R and I are those of a phase and of the set-point's peak: the drop is 2 R I of a quasi-square current, and sqrt(3) R I of a sine.",
