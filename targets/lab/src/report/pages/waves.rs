@@ -3,18 +3,14 @@
 use super::{as_line, phase_keys, plotted, switches};
 use crate::closed_loop::Trace;
 use crate::report::plot::{
-    Columns, Wave, columns, reference_phase, torque_range, trajectory, wave,
+    Columns, TURN, Wave, columns, reference_phase, torque_range, trajectory, wave,
 };
 use crate::report::{Block, Color, DEMAND, Figure, IDEAL, Key, PHASES, Plot, Sign, variant};
 use crate::results::Results;
 use crate::text::{TorqueScale, number};
-use std::ops::Range;
 
 /// Columns of a plot over one turn: one for each pixel or two; half of the page's bytes are theirs.
 const COLUMNS: usize = 400;
-
-/// The plotted turn, in degrees.
-const TURN: Range<f64> = -30.0..330.0;
 
 /// A plotted record.
 pub struct Panel<'a> {

@@ -13,7 +13,7 @@ pub use plane::{Named, Plane, corners, plane, ray, trajectory};
 pub use stability::{SEARCH, stability};
 pub use torque_speed::{Curve, TorqueSpeed, dash, torque_speed};
 pub use turn::{ANGLE, Level, Wave, ideal_phase, levels, reference_phase, torque_range, wave};
-pub use window::{Columns, FIRST_DEG, columns, columns_between, means};
+pub use window::{Columns, FIRST_DEG, TURN, columns, columns_between, means};
 
 use super::palette::Color;
 use serde::Serialize;

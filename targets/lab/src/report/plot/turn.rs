@@ -1,7 +1,7 @@
 //! Signals over one electrical turn, with the sectors named above.
 
 use super::super::palette::{AXIS, Color, DEMAND, IDEAL};
-use super::window::{Columns, FIRST_DEG};
+use super::window::{Columns, FIRST_DEG, TURN};
 use super::{Axis, Plot, Point, Series, Stroke};
 use crate::closed_loop::quasi_square;
 use hexagen_codegen::spec::{EmfShape, Reference, proportional_current};
@@ -29,13 +29,12 @@ pub const ANGLE: &str = "electrical angle in degrees";
 
 /// An empty plot over one electrical turn.
 fn over_a_turn(description: String, height: f64, y: Axis) -> Plot {
-    let turn = FIRST_DEG..FIRST_DEG + 360.0;
     let mut x = Axis::stepped(ANGLE, &(0.0..360.0), 60.0);
     for (at, label) in &mut x.ticks {
         *at += FIRST_DEG;
         *label = super::tick_text(*at, 0);
     }
-    x.range = (turn.start, turn.end);
+    x.range = (TURN.start, TURN.end);
     let top = y.range.1;
     let mut plot = Plot::new(description, (550.0, height), x, y);
     for sector in 1..=6 {
@@ -52,7 +51,7 @@ pub fn wave(wave: Wave) -> Plot {
     for corners in wave.ideal {
         plot.line(corners, Stroke::solid(IDEAL, 3.0));
     }
-    let across = |height: f64| [(FIRST_DEG, height), (FIRST_DEG + 360.0, height)];
+    let across = |height: f64| [(TURN.start, height), (TURN.end, height)];
     if wave.range.start < 0.0 {
         plot.line(across(0.0), Stroke::solid(AXIS, 0.5));
     }

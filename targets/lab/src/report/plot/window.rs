@@ -10,10 +10,13 @@ use std::ops::Range;
 /// Electrical angle in degrees at which sector S1 begins.
 pub const FIRST_DEG: f64 = -30.0;
 
+/// The plotted turn, in degrees.
+pub const TURN: Range<f64> = FIRST_DEG..FIRST_DEG + 360.0;
+
 /// A signal over one turn, a value per column.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
-    /// Electrical angle of each column's middle in degrees, [`FIRST_DEG`] to 330, ascending.
+    /// Electrical angle of each column's middle in degrees within [`TURN`], ascending.
     pub angle: Vec<f64>,
     /// Mean over one control period.
     pub mean: Vec<f64>,
@@ -23,7 +26,7 @@ pub struct Columns {
     pub most: Vec<f64>,
 }
 
-/// Electrical angle of a bin in degrees, from [`FIRST_DEG`] to below 330.
+/// Electrical angle of a bin in degrees within [`TURN`].
 fn angle(theta_e: f64) -> f64 {
     (theta_e.to_degrees() - FIRST_DEG).rem_euclid(360.0) + FIRST_DEG
 }
