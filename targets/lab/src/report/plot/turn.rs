@@ -158,3 +158,59 @@ pub fn torque_range<'a>(demand: f64, signals: impl Iterator<Item = &'a Columns>)
     let pad = 0.04 * (most - least);
     least - pad..most + pad
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{TURN, reference_phase};
+    use hexagen_codegen::spec::{EmfShape, Reference};
+
+    const SET_POINT: f64 = 20.0;
+
+    fn phases(reference: Reference, shape: EmfShape) -> [Vec<(f64, f64)>; 3] {
+        [0, 1, 2].map(|phase| reference_phase((reference, SET_POINT), shape, phase, &TURN))
+    }
+
+    /// A proportional current beside the EMF makes the torque of the set-point at every angle, without a neutral.
+    #[test]
+    fn a_proportional_reference_makes_constant_torque() {
+        for shape in [
+            EmfShape::Sinusoidal,
+            EmfShape::Trapezoidal {
+                flat_top_deg: 120.0,
+            },
+        ] {
+            let [a, b, c] = phases(Reference::Proportional, shape);
+            let torque = SET_POINT * shape.torque_factor(Reference::Proportional);
+            assert_eq!([a[0].0, a[a.len() - 1].0], [TURN.start, TURN.end]);
+            for ((a, b), c) in a.iter().zip(&b).zip(&c) {
+                let currents = [a.1, b.1, c.1];
+                let emf = [0.0, 120.0, 240.0].map(|lag: f64| shape.at((a.0 - lag).to_radians()));
+                let made: f64 = currents.iter().zip(emf).map(|(i, e)| i * e).sum();
+                assert!(currents.iter().sum::<f64>().abs() < 1e-9, "{currents:?}");
+                assert!((made - torque).abs() < 1e-9 * torque, "{}: {made}", a.0);
+            }
+        }
+    }
+
+    /// Blocks of 120 degrees, and within a part of the turn none beyond its ends.
+    #[test]
+    fn a_quasi_square_reference_is_blocks_that_end_at_the_edge() {
+        let shape = EmfShape::Sinusoidal;
+        let [a, ..] = phases(Reference::QuasiSquare, shape);
+        let inner = |middle: f64| {
+            let pair = a
+                .windows(2)
+                .find(|pair| pair[0].0 < middle && middle < pair[1].0);
+            pair.map(|pair| pair[0].1.round())
+        };
+        let levels = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0].map(inner);
+        let block = [0.0, 20.0, 20.0, 0.0, -20.0, -20.0].map(Some);
+        assert_eq!(levels, block);
+        let part = 10.0..80.0;
+        let cut = reference_phase((Reference::QuasiSquare, SET_POINT), shape, 0, &part);
+        assert!(
+            cut.iter().all(|(x, _)| (10.0..=80.0).contains(x)),
+            "{cut:?}"
+        );
+    }
+}
