@@ -81,7 +81,8 @@ fn closed_loops_of_32_bit_words_have_the_figures_of_merit_of_floating_point() {
         let measured = at_speeds(drive, &PlantOptions::default()).expect("runs");
         for (rpm, both) in &measured {
             let [fixed, ideal] = [&both.fixed.figures, &both.ideal.figures];
-            for figure in differences(fixed, ideal, ideal) {
+            let reference = drive.spec.controller.common().reference;
+            for figure in differences(reference, fixed, ideal, ideal) {
                 assert!(figure.close, "{}, {rpm} rpm: {figure:?}", named());
             }
         }

@@ -29,7 +29,12 @@ fn fixed_and_ideal_agree_in_all_figures_of_rows_with_a_modulator_and_in_the_torq
                 let both = side_by_side(&drive, &plant, &run, set_point).expect("runs");
                 let ideal = &both.ideal.figures;
                 let decides = !drive.spec.controller.modulates();
-                for figure in differences(&both.fixed.figures, ideal, ideal) {
+                for figure in differences(
+                    drive.spec.controller.common().reference,
+                    &both.fixed.figures,
+                    ideal,
+                    ideal,
+                ) {
                     if decides && figure.figure != "mean torque" {
                         continue;
                     }

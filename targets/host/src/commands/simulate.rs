@@ -333,9 +333,7 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
     }
     let mut table = Table::listed(["figure of merit"], ["value", "unit"]);
     let figures = &outcome.figures;
-    let of_shape = figures.quasi_square_rows().into_iter();
-    let of_shape = of_shape.filter(|_| reference == Reference::QuasiSquare);
-    for (name, value, unit) in figures.rows().into_iter().chain(of_shape) {
+    for (name, value, unit) in figures.rows_of(reference) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
     cli::print_table(&table)

@@ -297,21 +297,15 @@ fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
         "{}",
         all.stdout
     );
-    let one = run([
-        "compare",
-        PAPER,
-        "--controller",
-        "pi-pwm",
-        "--start-angle",
-        "0.1",
-    ]);
-    assert!(
-        one.stdout
-            .contains("| distance from quasi-square currents, rms"),
-        "{}",
-        one.stdout
-    );
-    assert!(!one.stdout.contains("phcc:word"), "{}", one.stdout);
+    // A distance from blocks says nothing of a current that follows the EMF.
+    for (reference, has_blocks) in [("quasi_square", true), ("proportional", false)] {
+        let variant = format!("pi-pwm:reference={reference}");
+        let controller = ["--controller", variant.as_str(), "--start-angle", "0.1"];
+        let one = run(["compare", PAPER].iter().chain(&controller));
+        let figure = "| distance from quasi-square currents, rms";
+        assert_eq!(one.stdout.contains(figure), has_blocks, "{}", one.stdout);
+        assert!(!one.stdout.contains("phcc:word"), "{}", one.stdout);
+    }
 }
 
 #[test]

@@ -88,10 +88,16 @@ pub fn accuracy(drive: &Prepared, plant: &PlantOptions) -> Result<Accuracy, LabE
     let (params, torque) = (plant.plant(drive)?, drive.demand());
     let set_point = plant.set_point(drive, torque);
     let measured = at_speeds(drive, plant)?;
+    let reference = drive.spec.controller.common().reference;
     let closed_loop = measured.iter().map(|(rpm, both)| {
         let run = plant.run(drive, *rpm, torque);
         let alone = measure(&params, &run, drive.maker(Model::Ideal, set_point))?;
-        let figures = differences(&both.fixed.figures, &both.ideal.figures, &alone.figures);
+        let figures = differences(
+            reference,
+            &both.fixed.figures,
+            &both.ideal.figures,
+            &alone.figures,
+        );
         Ok(AtSpeed {
             rpm: *rpm,
             tripped: both.fixed.tripped,

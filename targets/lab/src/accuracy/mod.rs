@@ -19,6 +19,7 @@ use crate::closed_loop::{
 use crate::engine::{Engine, Model, Prepared, SetPoint};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
 use hexagen::{Fault, Legs, Sample};
+use hexagen_codegen::spec::Reference;
 use hexagen_reference::{BitTrue, Ideal};
 use one_step::{Step, Sums};
 use rayon::prelude::*;
@@ -198,13 +199,14 @@ impl FigureDifference {
     }
 }
 
-/// Compares figures of merit one by one.
+/// Compares figures of merit one by one, those that belong to a drive whose current has this shape.
 pub fn differences(
+    reference: Reference,
     fixed: &FiguresOfMerit,
     ideal: &FiguresOfMerit,
     alone: &FiguresOfMerit,
 ) -> Vec<FigureDifference> {
-    let rows = |of: &FiguresOfMerit| of.rows().into_iter().chain(of.quasi_square_rows());
+    let rows = |of: &FiguresOfMerit| of.rows_of(reference);
     rows(fixed)
         .zip(rows(ideal).zip(rows(alone)))
         .map(

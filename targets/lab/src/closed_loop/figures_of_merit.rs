@@ -2,6 +2,7 @@
 
 use super::trace::{Trace, quasi_square};
 use super::{amplitudes, percent};
+use hexagen_codegen::spec::Reference;
 use serde::Serialize;
 
 /// Figures of merit; undefined ones are null in JSON. A tripped drive has none
@@ -147,8 +148,18 @@ impl FiguresOfMerit {
         ]
     }
 
-    /// The same of those that compare with a quasi-square current.
-    pub fn quasi_square_rows(&self) -> [(&'static str, Option<f64>, &'static str); 2] {
+    /// Those that belong to a current of this shape: all of [`Self::rows`], and what compares with the reference.
+    pub fn rows_of(
+        &self,
+        reference: Reference,
+    ) -> impl Iterator<Item = (&'static str, Option<f64>, &'static str)> + use<> {
+        let of_shape = self.quasi_square_rows().into_iter();
+        let of_shape = of_shape.filter(move |_| reference == Reference::QuasiSquare);
+        self.rows().into_iter().chain(of_shape)
+    }
+
+    /// Figures that compare with a quasi-square current, as [`Self::rows`].
+    fn quasi_square_rows(&self) -> [(&'static str, Option<f64>, &'static str); 2] {
         [
             (
                 "distance from quasi-square currents, rms",
