@@ -13,6 +13,7 @@ use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_
 use crate::judgement::coarse_period;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
+use hexagen_codegen::diagnostics::Code;
 use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
 use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
@@ -104,6 +105,8 @@ pub struct Tried {
     pub variant: &'static str,
     /// Why the generator refuses it, if it does.
     pub refused: Option<String>,
+    /// Code of the first diagnostic that says so.
+    pub refused_by: Option<String>,
     /// Runs on the stated motor, at each of [`SPEEDS`].
     pub nominal: Vec<Point>,
     /// Runs with each deviation.
@@ -123,6 +126,7 @@ impl Tried {
         Self {
             variant,
             refused: None,
+            refused_by: None,
             nominal: Vec::new(),
             deviating: Vec::new(),
             cycles: None,
@@ -291,6 +295,7 @@ fn try_all(drives: &[Drive], progress: &dyn Progress) -> Result<Vec<Tried>, LabE
             Ok(drive) => try_drive(variant, drive),
             Err(reason) => Ok(Tried {
                 refused: Some(reason.to_string()),
+                refused_by: code_of(reason).map(|code| code.to_string()),
                 ..Tried::new(variant)
             }),
         };
@@ -490,13 +495,19 @@ impl Regret {
     }
 }
 
+/// Code of the first diagnostic of an error.
+fn code_of(error: &LabError) -> Option<Code> {
+    match error {
+        LabError::Diagnostics { code, .. } => *code,
+        _ => None,
+    }
+}
+
 /// What is against a variant that is refused, trips or takes longer than the period.
 fn works(tried: &Tried) -> Option<String> {
-    if let Some(reason) = &tried.refused {
-        let code = reason
-            .split_once("error[")
-            .and_then(|(_, rest)| rest.split_once(']'));
-        return Some(code.map_or("refused".to_owned(), |(code, _)| format!("refused: {code}")));
+    if tried.refused.is_some() {
+        let code = tried.refused_by.as_ref();
+        return Some(code.map_or("refused".to_owned(), |code| format!("refused: {code}")));
     }
     if tried.overruns {
         return Some("a step may take longer than the control period".to_owned());

@@ -3,12 +3,20 @@
 use crate::counted::CountedError;
 use crate::engine::SourceError;
 use crate::plant::PlantError;
-use hexagen_codegen::diagnostics::Diagnostics;
+use hexagen_codegen::diagnostics::{Code, Diagnostics};
 
 /// An error in a motor, a controller, a plant or an argument; its text is complete.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum LabError {
-    /// The specification, motor file or variant is wrong: all diagnostics, rendered.
+    /// The specification, motor file or variant is wrong: all diagnostics, rendered, and the first one's code.
+    #[error("{text}")]
+    Diagnostics {
+        /// The diagnostics.
+        text: String,
+        /// Code of the first.
+        code: Option<Code>,
+    },
+    /// What is wrong with a file or with a selection, rendered.
     #[error("{0}")]
     Specification(String),
     /// No such motor.
@@ -39,6 +47,9 @@ impl From<SourceError> for LabError {
 
 impl From<Diagnostics> for LabError {
     fn from(errors: Diagnostics) -> Self {
-        Self::Specification(errors.to_string())
+        Self::Diagnostics {
+            text: errors.to_string(),
+            code: errors.as_slice().first().map(|error| error.code),
+        }
     }
 }

@@ -139,6 +139,18 @@ fn the_best_controller_of_a_motor_is_recommended_with_the_reason() {
     let advice = run(["advise", "teknic-m2310p"].iter().chain(&board)).json();
     let place = advice["recommended"].as_u64().expect("a place") as usize;
     assert!(advice["tried"][place]["why_not"].is_null(), "{advice}");
+    let refused = advice["tried"].as_array().expect("a list").iter();
+    let refused = refused.filter(|tried| tried["refused"].is_string());
+    let codes = refused.map(|tried| {
+        let code = tried["refused_by"].as_str().expect("a code");
+        assert_eq!(tried["why_not"], format!("refused: {code}"));
+        assert!(
+            tried["refused"]
+                .as_str()
+                .is_some_and(|text| text.contains(code))
+        );
+    });
+    assert!(codes.count() > 0, "{advice}");
     run(["advise", "no-motor"]).assert_bad_input(&["no-motor"]);
     run(["advise", "teknic-m2310p", "--board", "esc1"]).assert_bad_input(&["esc1"]);
 }
