@@ -177,6 +177,25 @@ impl Judgement {
         Ok(judgement)
     }
 
+    /// The limits of the bus current, where there are any.
+    pub fn bus_limits(&self) -> Option<String> {
+        let limits = [
+            (self.bus_current_limit_a, "drawn from the bus"),
+            (self.return_current_limit_a, "returned to it"),
+        ];
+        let limits = limits.into_iter().filter_map(|(most, way)| {
+            let most = engineering(most?, "A");
+            Some(format!("{most} {way}"))
+        });
+        let limits: Vec<String> = limits.collect();
+        (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")))
+    }
+
+    /// The error of a drive that does not work.
+    pub fn failure(&self) -> Option<String> {
+        (!self.works).then(|| format!("error: {}", self.verdict))
+    }
+
     /// The runs on the nominal bus, and that at the least bus voltage, if there is one.
     pub fn runs(&self) -> (&[Point], &[Point]) {
         self.points.split_at(SPEEDS.len().min(self.points.len()))

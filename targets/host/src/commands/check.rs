@@ -48,11 +48,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         let lines = text::lines(&judgement, &drive, options.reasons, &next(asked));
         print_text(&lines.join("\n"))?;
     }
-    if judgement.works {
-        Ok(())
-    } else {
-        Err(Failure::Check(format!("error: {}", judgement.verdict)))
-    }
+    judgement
+        .failure()
+        .map_or(Ok(()), |error| Err(Failure::Check(error)))
 }
 
 /// The command that says more of the same drive.

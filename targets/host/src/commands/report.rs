@@ -3,9 +3,10 @@
 use crate::cli::{Bar, Failure, note, print_json, print_table, print_text, wrapped_row};
 use crate::render;
 use clap::Args;
+use hexagen_lab::judgement::Judgement;
 use hexagen_lab::report::{results_page, variants_table, verdict};
 use hexagen_lab::results::{PAPER_MOTOR, Plan, Results};
-use hexagen_lab::verification::mismatches;
+use hexagen_lab::verification::{Checked, mismatches};
 use std::path::{Path, PathBuf};
 
 /// Default folder of the page.
@@ -42,7 +43,7 @@ pub struct Output {
 /// Runs the command.
 ///
 /// # Errors
-/// No such motor, diagnostics, or a page that cannot be written.
+/// No such motor, diagnostics, a page that cannot be written, or a drive that does not work.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let Output { out, all, json } = &options.output;
     let folder = out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
@@ -67,7 +68,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             }
         }
     }
-    mismatches(&checked).map_or(Ok(()), |lines| Err(Failure::Check(lines)))
+    outcome(data.own.as_ref().map(|own| &own.judgement), &checked)
+}
+
+/// Fails as `check` does for the same drive, and where generated code differs from its reference.
+fn outcome(judgement: Option<&Judgement>, checked: &[Checked]) -> Result<(), Failure> {
+    let fails = judgement.and_then(Judgement::failure);
+    let failures: Vec<String> = fails.into_iter().chain(mismatches(checked)).collect();
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(Failure::Check(failures.join("\n")))
+    }
 }
 
 /// The verdict in at most 12 lines of at most 100 columns.

@@ -27,7 +27,7 @@ pub(super) fn lines(
         ("sensing", of_sensing(judgement, inverter)),
         ("bus", of_bus(judgement, drive)),
     ];
-    rows.extend(of_limits(judgement).map(|text| ("limits", text)));
+    rows.extend(judgement.bus_limits().map(|text| ("limits", text)));
     rows.push(("current", of_current(judgement, motor, inverter)));
     rows.push(("step", sentence(&drive.generated.interface.times)));
     rows.push(("torque", of_torque(judgement)));
@@ -132,20 +132,6 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         engineering(judgement.rating_v, "V"),
         judgement.envelope_rpm.floor(),
     )
-}
-
-/// The limits of the bus current, where there are any.
-fn of_limits(judgement: &Judgement) -> Option<String> {
-    let limits = [
-        (judgement.bus_current_limit_a, "drawn from the bus"),
-        (judgement.return_current_limit_a, "returned to it"),
-    ];
-    let limits = limits.into_iter().filter_map(|(most, way)| {
-        let most = engineering(most?, "A");
-        Some(format!("{most} {way}"))
-    });
-    let limits: Vec<String> = limits.collect();
-    (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")))
 }
 
 /// The demanded torque's current beside the rated one, the mean that it draws from the bus at rated speed,

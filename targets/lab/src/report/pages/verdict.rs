@@ -16,6 +16,7 @@ pub fn verdict(data: &Results) -> Option<(String, Vec<(&'static str, String)>)> 
     let rows = vec![
         ("motor", motor(data)),
         ("controller", controller(data, variant, run)),
+        ("limits", own.judgement.bus_limits().unwrap_or_default()),
         ("torque", torque(data, variant, run)),
         ("ripple", ripples(run)),
         ("losses", losses(data, variant)),
