@@ -347,10 +347,28 @@ pub(crate) fn coarse_period(spec: &Spec) -> Option<String> {
     };
     (degrees > COARSE).then(|| {
         format!(
-            "; at rated speed the rotor turns {} electrical degrees in a control period: raise `f_pwm`{finer}",
-            significant(degrees, 2)
+            "; at rated speed the rotor turns {} electrical degrees in a control period: {}{finer}",
+            significant(degrees, 2),
+            shorter_period(spec, degrees),
         )
     })
+}
+
+/// What makes the control period short enough for a turn of [`COARSE`] degrees: fewer PWM periods in it, where those
+/// are counted, or a PWM frequency, to two digits.
+fn shorter_period(spec: &Spec, degrees: f64) -> String {
+    let per_control = f64::from(spec.inverter.pwm_per_control);
+    let fewer = (per_control * COARSE / degrees).floor();
+    if fewer >= 1.0 {
+        let turn = significant(degrees * fewer / per_control, 2);
+        return format!("lower `pwm_per_control` to {fewer} ({turn} degrees)");
+    }
+    let least = per_control / spec.inverter.t_s * degrees / COARSE;
+    let step = 10_f64.powf(least.log10().floor() - 1.0);
+    let f_pwm = (least / step).ceil() * step;
+    let turn = significant(per_control * degrees / (spec.inverter.t_s * f_pwm), 2);
+    let f_pwm = engineering(f_pwm, "Hz");
+    format!("raise `f_pwm` to {f_pwm} ({turn} degrees)")
 }
 
 /// What is told of a step whose longest path takes most of the control period, or more.

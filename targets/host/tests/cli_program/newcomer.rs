@@ -231,6 +231,74 @@ fn with_inverter(folder: &std::path::Path, lines: &str) -> String {
     file.to_str().expect("a path").to_owned()
 }
 
+/// A motor whose rotor turns 23 electrical degrees in a control period, with Hall edges that are sampled.
+const COARSE: &str = r#"
+[motor]
+pole_pairs = 12
+resistance = "135 mohm per_phase"
+inductance = "0.22 mH per_phase"
+winding = "star"
+back_emf = "0.4 V/(rad/s) line_to_line peak"
+emf_shape = "trapezoidal"
+rated_current = "20 A peak"
+rated_speed = "800 rpm"
+[inverter]
+bus_voltage = "48 V"
+f_pwm = "2.5 kHz"
+timer_clock = "72 MHz"
+adc_bits = 12
+adc_range = "40 A"
+current_sensing = "in_phase"
+[controller]
+kind = "pdcc"
+"#;
+
+/// The remedy of a coarse period is one: with the frequency that is named the drive works.
+#[test]
+fn check_names_the_frequency_that_makes_the_period_short_enough() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let verdict_at = |f_pwm: &str| {
+        let file = folder.path().join("coarse.toml");
+        fs::write(&file, COARSE.replace("2.5 kHz", f_pwm)).expect("is written");
+        let said = run(["check", file.to_str().expect("a path"), "--json"]);
+        let judgement = said.json_whatever_the_code();
+        assert_eq!(said.code == 0, judgement["works"] == true, "{said:?}");
+        judgement["verdict"].as_str().expect("a text").to_owned()
+    };
+    let verdict = verdict_at("2.5 kHz");
+    let told = "the rotor turns 23 electrical degrees in a control period: raise `f_pwm` to 3.9 kHz (15 degrees)";
+    assert!(verdict.contains(told), "{verdict}");
+    let finer = verdict_at("3.9 kHz");
+    assert!(finer.starts_with("works"), "{finer}");
+}
+
+/// The page is written, and says what `check` says.
+#[test]
+fn a_report_of_a_drive_that_does_not_work_fails_as_its_check() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("coarse.toml");
+    let limited = "[inverter]\nreturn_current_limit = \"5 A\"\n";
+    fs::write(&file, COARSE.replace("[inverter]\n", limited)).expect("is written");
+    let file = file.to_str().expect("a path");
+    let out = folder.path().to_str().expect("a path");
+    let checked = run(["check", file]);
+    let reported = run(["report", file, "--out", out]);
+    assert_eq!([checked.code, reported.code], [1, 1], "{reported:?}");
+    let error = checked
+        .stderr
+        .lines()
+        .find(|line| line.starts_with("error: "));
+    assert!(
+        reported.stderr.contains(error.expect("is told")),
+        "{reported:?}"
+    );
+    let limits = "limits      at most 5 A returned to it";
+    for said in [&checked, &reported] {
+        assert!(said.stdout.contains(limits), "{said:?}");
+    }
+    assert!(folder.path().join("report-coarse.html").is_file());
+}
+
 #[test]
 fn check_runs_at_the_least_bus_voltage_that_the_file_states() {
     const MEASURED: &str = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\n";
