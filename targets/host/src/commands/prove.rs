@@ -123,7 +123,7 @@ pub fn collect_scripts(
         .enumerate()
         .flat_map(|(drive, scripts)| scripts.into_iter().map(move |script| (drive, script)))
         .collect();
-    let progress = Bar::default();
+    let progress = Bar::of_long_work();
     progress.begin("proving", scripts.len() as u64);
     let proofs: Result<Vec<(usize, Proof, Option<Certified>)>, _> = scripts
         .par_iter()

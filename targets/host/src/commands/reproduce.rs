@@ -32,8 +32,8 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let folder = options.out.clone().unwrap_or_else(|| PathBuf::from(FOLDER));
     render::prepare_folder(&folder)?;
-    let data = reproduce(&Effort::full(), &Bar::default())?;
-    let table = results_blocks(&Plan::of_paper()?.table(&Bar::default())?);
+    let data = reproduce(&Effort::full(), &Bar::of_long_work())?;
+    let table = results_blocks(&Plan::of_paper()?.table(&Bar::of_long_work())?);
     let mut page = reproduction_page(&data);
     page.sections
         .push(Section::new("expected", EXPECTED, table.clone()));

@@ -108,7 +108,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         }
     }
     let (steps, seed) = (options.steps, options.seed);
-    let results = verify_with(&drives, &verifiers, steps, seed, &Bar::default());
+    let results = verify_with(&drives, &verifiers, steps, seed, &Bar::of_long_work());
     let outcome = mismatches(&results).map_or(Ok(()), |lines| Err(Failure::Check(lines)));
     if options.json {
         print_json(&Verification {

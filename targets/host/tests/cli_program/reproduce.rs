@@ -21,6 +21,7 @@ fn experiment_runs_and_leaves_its_page() {
             said.stdout
         );
     }
+    assert!(said.stderr.contains("simulating …\n"), "{said:?}");
     let page = folder.path().join("reproduction.html");
     let last = said.stdout.lines().last();
     assert_eq!(last, Some(format!("Page: {}", page.display()).as_str()));
