@@ -240,7 +240,7 @@ impl Draft {
         while let Some(line) = self.next_question(&asked, file) {
             let about = line.about.replace("\n# ", " ");
             let optional = if line.is_asked {
-                ", empty if the data sheet does not state it"
+                ", empty to leave it out"
             } else {
                 ""
             };
@@ -488,6 +488,9 @@ mod tests {
             "200 ns",
             "0 us",
             "",
+            "10 A",
+            "2 A",
+            "",
             "",
             "",
         ];
@@ -502,6 +505,69 @@ mod tests {
             "resistance = \"0.56 ohm terminal\"",
             "emf_shape = \"trapezoidal\"",
             "settling_time = \"1 us\"",
+            "return_current_limit = \"2 A\"",
+        ] {
+            assert!(text.contains(line), "{line} is not in {text}");
+        }
+        let told: Vec<String> = errors(&text, file)
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        assert!(told.is_empty(), "{told:#?}");
+    }
+
+    /// What is asked for beside a measured bus and a speed loop.
+    #[test]
+    fn braking_and_speed_control_are_asked_for() {
+        let file = Path::new("hub.toml");
+        let given = [
+            ("poles", "30"),
+            ("resistance", "0.4 ohm terminal"),
+            ("inductance", "0.6 mH terminal"),
+            ("emf_shape", "sinusoidal"),
+            ("rated_current", "10 A peak"),
+            ("rated_torque", "5.17 Nm"),
+            ("rated_speed", "400 rpm"),
+            ("no_load_speed", "660 rpm"),
+            ("nominal_voltage", "36 V"),
+            ("inertia", "2 kg cm2"),
+            ("bus_voltage", "36 V"),
+            ("timer_clock", "72 MHz"),
+            ("adc_range", "30 A"),
+            ("current_sensing", "in_phase"),
+            ("v_bus", "measured"),
+            ("dead_time", "500 ns"),
+            ("hall_timer_clock", "100 kHz"),
+        ];
+        let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+        let mut draft = Draft::of(given.to_vec(), file).expect("nothing is wrong");
+        let answers = [
+            "",
+            // The basis of an outrunner's constant is asked for.
+            "16 KV",
+            "16 KV peak",
+            "12",
+            "60 V",
+            "",
+            "43 V",
+            "3 V",
+            "",
+            "4 A",
+            "on",
+            "300 rpm/s",
+        ];
+        let mut answers = answers.iter().map(|answer| Ok((*answer).to_owned()));
+        draft.ask(&mut answers, file).expect("answers are read");
+        assert_eq!(answers.count(), 0, "an answer was not asked for");
+        let text = draft.text();
+        for line in [
+            "back_emf = \"16 KV peak\"",
+            "bus_adc_range = \"60 V\"",
+            "bus_max = \"43 V\"",
+            "braking_fade = \"3 V\"",
+            "return_current_limit = \"4 A\"",
+            "speed_loop = \"on\"",
+            "acceleration_limit = \"300 rpm/s\"",
         ] {
             assert!(text.contains(line), "{line} is not in {text}");
         }

@@ -219,6 +219,58 @@ const INVERTER: &[Line] = &[
         "fixed",
     )
     .optional(),
+    needed(
+        &["bus_adc_bits"],
+        "Bits of the ADC that measures the bus.",
+        "12",
+    )
+    .only_with("v_bus", "measured"),
+    needed(
+        &["bus_adc_range"],
+        "Bus voltage at that ADC's full scale.",
+        "80 V",
+    )
+    .only_with("v_bus", "measured"),
+    needed(
+        &["bus_min"],
+        "Bus voltage below which the drive trips; 70 % of bus_voltage where nothing is said.",
+        "36 V",
+    )
+    .asked()
+    .only_with("v_bus", "measured"),
+    needed(
+        &["bus_max"],
+        "Bus voltage above which the drive trips, as when it brakes into a full battery; 130 % where nothing is said.",
+        "60 V",
+    )
+    .asked()
+    .only_with("v_bus", "measured"),
+    needed(
+        &["braking_fade"],
+        "Width of the bus voltage below bus_max over which braking torque falls to 0.",
+        "4 V",
+    )
+    .asked()
+    .only_with("v_bus", "measured"),
+    needed(
+        &["bus_current_limit"],
+        "Largest mean current drawn from the supply; no limit where nothing is said.",
+        "10 A",
+    )
+    .asked(),
+    needed(
+        &["return_current_limit"],
+        "Largest mean current returned to the supply when braking: what charges a battery, little where nothing\n\
+         # takes it; no limit where nothing is said.",
+        "5 A",
+    )
+    .asked(),
+    needed(
+        &["bus_clamp"],
+        "Voltage at which a brake chopper or the battery holds the bus while the motor drives current into it.",
+        "56 V",
+    )
+    .optional(),
     needed(&["max_current"], "Largest set-point. By default rated_current; with a sinusoidal EMF up to 15 % more where rated_torque needs it.", "25 A").optional(),
     needed(&["dead_time"], "Of the gate driver, per edge.", "500 ns").asked(),
     needed(
@@ -236,6 +288,26 @@ const CONTROLLER: &[Line] = &[
         "pdcc",
     )
     .or("pdcc"),
+    needed(
+        &["speed_loop"],
+        "on: a PI controller of the speed around that of the current; needs inertia. off where nothing is said.",
+        "on",
+    )
+    .asked(),
+    needed(
+        &["speed_bandwidth"],
+        "Bandwidth of the speed loop; by default 1/50 of the electrical frequency at rated speed.",
+        "5 Hz",
+    )
+    .optional()
+    .only_with("speed_loop", "on"),
+    needed(
+        &["acceleration_limit"],
+        "Largest rate at which the speed follows its set-point; at once where nothing is said.",
+        "2000 rpm/s",
+    )
+    .asked()
+    .only_with("speed_loop", "on"),
     needed(
         &["target"],
         "The core: cortex_m4 (as M3, M7 and M33), cortex_m0 or riscv32; whether a step fits is then checked.",
