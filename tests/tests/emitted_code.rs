@@ -241,12 +241,12 @@ fn readme_shows_the_interrupt_of_a_board() {
     let shown = readme.split("```rust,ignore\n").nth(1);
     let shown = shown.and_then(|rest| rest.split("```").next());
     let program = [
-        include_str!("../../targets/frameworks/vesc-4/src/main.rs"),
-        include_str!("../../targets/frameworks/vesc-4/src/board.rs"),
+        include_str!("../../targets/frameworks/b-g431b-esc1/src/main.rs"),
+        include_str!("../../targets/frameworks/b-g431b-esc1/src/board.rs"),
     ]
     .concat();
     let functions: Vec<&str> = shown.expect("is there").split("\n\n").collect();
-    assert_eq!(functions.len(), 3);
+    assert_eq!(functions.len(), 5);
     for function in functions {
         assert!(
             program.contains(function.trim_end()),
