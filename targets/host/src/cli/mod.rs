@@ -28,6 +28,7 @@ use std::process::ExitCode;
 
 /// Runs the program on the process's arguments.
 pub fn run() -> ExitCode {
+    commands::completions::answer();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         // clap prints help and version this way as well.

@@ -567,13 +567,29 @@ fn codes_are_explained() {
 }
 
 #[test]
-fn shells_complete_the_commands() {
+fn shells_complete_commands_motors_boards_and_files() {
     for shell in ["bash", "zsh", "fish"] {
         let said = run(["completions", shell]);
         assert_eq!(said.code, 0, "{said:?}");
-        for command in ["explain", "check", "--controller"] {
-            let plain = command.trim_start_matches('-');
-            assert!(said.stdout.contains(plain), "{shell}: {command}");
-        }
+        assert!(said.stdout.contains("COMPLETE"), "{shell}: {said:?}");
     }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("triangle.toml"), "").expect("is written");
+    fs::write(folder.path().join("trial.txt"), "").expect("is written");
+    let offered = |typed: &[&str]| {
+        let mut asked = hexagen();
+        asked.current_dir(folder.path()).env("COMPLETE", "fish");
+        let output = asked.args(["--", "hexagen"].iter().chain(typed)).output();
+        let said = Said::from(output.expect("the program starts"));
+        let words = said
+            .stdout
+            .lines()
+            .filter_map(|line| line.split('\t').next());
+        words.map(str::to_owned).collect::<Vec<String>>()
+    };
+    assert_eq!(offered(&["expl"]), ["explain"]);
+    assert_eq!(offered(&["check", "tri"]), [PAPER, "triangle.toml"]);
+    assert_eq!(offered(&["check", "--contr"]), ["--controller"]);
+    let boards = offered(&["report", PAPER, "--board", "vesc"]);
+    assert_eq!(boards, ["vesc-4", "vesc-75-300"]);
 }
