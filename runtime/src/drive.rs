@@ -201,18 +201,8 @@ impl<C: Control> ControlLoop<'_, C> {
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> C::Command {
         let Self { set_point, core } = self;
-        if let Some(fault) = set_point.words.bus.pass_period() {
+        if let Some(fault) = unsampled_fault(set_point, &core.law) {
             trip(set_point, core, *sample, fault);
-        }
-        if let Some(has_lost_currents) = C::HAS_LOST_CURRENTS
-            && has_lost_currents(&core.law)
-        {
-            trip(set_point, core, *sample, Fault::Residual);
-        }
-        if let Some(is_too_fast) = C::IS_TOO_FAST
-            && is_too_fast(&core.law)
-        {
-            trip(set_point, core, *sample, Fault::OverSpeed);
         }
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
@@ -340,6 +330,21 @@ impl<C: Control> ControlLoop<'_, C> {
     fn publish(&self) {
         publish(self.set_point, self.core);
     }
+}
+
+/// The first fault that no sample shows: of the bus voltage, or of what the law watches. Ages the bus
+/// voltage by a period.
+#[inline]
+fn unsampled_fault<C: Control>(set_point: &SetPoint<C>, law: &C::State) -> Option<Fault> {
+    let of_bus = set_point.words.bus.pass_period();
+    let watched = [
+        (C::HAS_LOST_CURRENTS, Fault::Residual),
+        (C::IS_TOO_FAST, Fault::OverSpeed),
+    ];
+    let of_law = watched
+        .into_iter()
+        .find(|(watch, _)| watch.is_some_and(|is_found| is_found(law)));
+    of_bus.or(of_law.map(|(_, fault)| fault))
 }
 
 /// A period that does not pass the check.

@@ -7,6 +7,7 @@
 mod figures;
 
 use crate::ir::{Cost, PathCost, Program};
+use crate::spec::Spec;
 use figures::CHIPS;
 use fnv::FnvHasher;
 use std::fmt;
@@ -54,14 +55,47 @@ pub struct Chip {
 pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
-    /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
-    /// estimate.
-    pub error: f64,
+    /// Errors by [`Group`]: the largest of a counted drive that [tells](Group::tells_of) of the
+    /// group, by the estimate fitted to all others, as a part of the estimate.
+    pub errors: [f64; Group::COUNT],
 }
 
 impl Estimate {
-    const fn of(weights: Work, error: f64) -> Self {
-        Self { weights, error }
+    const fn of(weights: Work, errors: [f64; Group::COUNT]) -> Self {
+        Self { weights, errors }
+    }
+}
+
+/// Drives whose estimates err alike. An edge that is learnt is work of few steps, of which the
+/// operations tell less than of the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// The places of the Hall sensors are learnt.
+    LearntHalls,
+    /// They are those that the specification states, or there are none.
+    StatedSensors,
+}
+
+impl Group {
+    /// Number of groups.
+    pub const COUNT: usize = 2;
+
+    /// The groups of whose errors a drive of this group tells. Few drives with learnt sensors are
+    /// counted, so that theirs is that of all.
+    pub fn tells_of(self) -> &'static [Self] {
+        match self {
+            Self::LearntHalls => &[Self::LearntHalls],
+            Self::StatedSensors => &[Self::LearntHalls, Self::StatedSensors],
+        }
+    }
+
+    /// The group of a drive.
+    pub fn of(spec: &Spec) -> Self {
+        if spec.controller.common().learning.halls {
+            Self::LearntHalls
+        } else {
+            Self::StatedSensors
+        }
     }
 }
 
@@ -192,6 +226,8 @@ pub struct Asked<'a> {
     pub clock: Option<f64>,
     /// Control period, seconds.
     pub period: f64,
+    /// The drive's group.
+    pub group: Group,
 }
 
 /// Times of a controller's step: on the chip of its core, on every chip if none is named.
@@ -210,9 +246,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
                 period: asked.period,
                 is_named: asked.target.is_some(),
                 times: counted.unwrap_or_else(|| chip.estimated(&work)),
-                errors: counted
-                    .is_none()
-                    .then(|| chip.estimates.map(|estimate| estimate.error)),
+                errors: counted.is_none().then(|| chip.errors(asked.group)),
             }
         })
         .collect()
@@ -234,6 +268,11 @@ impl Chip {
     fn counted(&self, digest: u64) -> Option<Times<u32>> {
         let counted = self.counted.iter().find(|(of, _)| *of == digest);
         counted.map(|(_, times)| *times)
+    }
+
+    fn errors(&self, group: Group) -> Times<f64> {
+        self.estimates
+            .map(|estimate| estimate.errors[group as usize])
     }
 
     fn estimated(&self, work: &Times<Work>) -> Times<u32> {
@@ -287,7 +326,7 @@ mod tests {
         name: "Chip",
         clock: 48e6,
         compiler: "rustc",
-        estimates: Times::of([Estimate::of(WEIGHTS, 0.1); 5]),
+        estimates: Times::of([Estimate::of(WEIGHTS, [0.2, 0.1]); 5]),
         counted: &COUNTED,
     };
 
@@ -303,6 +342,15 @@ mod tests {
     fn a_counted_drive_is_known_by_its_digest_alone() {
         assert_eq!(CHIP.counted(17).map(|times| times.any), Some(4));
         assert_eq!(CHIP.counted(18), None);
+    }
+
+    #[test]
+    fn an_estimate_has_the_error_of_its_group() {
+        let error = |group| CHIP.errors(group).any_cycles;
+        assert_eq!(
+            [Group::LearntHalls, Group::StatedSensors].map(error),
+            [0.2, 0.1]
+        );
     }
 
     #[test]

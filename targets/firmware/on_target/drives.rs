@@ -22,8 +22,15 @@ macro_rules! drives_for {
 
             // An encoder in place of Hall sensors.
             CheetahPdcc, step_mit_mini_cheetah_pdcc: "../motors/mit-mini-cheetah.toml", pdcc {};
+            CheetahPdccFieldWeakening, step_mit_mini_cheetah_pdcc_field_weakening:
+                "../motors/mit-mini-cheetah.toml", pdcc { field_weakening: on };
 
             HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
+
+            // Currents in the low legs, and sensors whose places are learnt.
+            HubPdcc, step_hoverboard_hub_pdcc: "../motors/hoverboard-hub.toml", pdcc {};
+            HubPdccHallLearning, step_hoverboard_hub_pdcc_hall_learning:
+                "../motors/hoverboard-hub.toml", pdcc { hall_learning: on };
 
             // The variants of the cost table's goals, each with the core's word length.
             TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:

@@ -353,29 +353,40 @@ impl Drive<'_> {
         }
     }
 
-    fn period(&self) -> Method {
-        let mut body = lines(&["hexagen_checked checked;"]);
-        let seen = self.resolve(&mut body);
-        if let Some(periods) = self.interface.bus_periods {
-            let line = format!(
-                "const hexagen_fault fault = hexagen_pass_period(&drive->bus, {});",
-                typed_number(periods)
-            );
-            body.push_str(&lines(&[&line, "if (fault != HEXAGEN_FAULT_NONE) {"]));
-            let inner = INDENT.repeat(2);
-            let _ = write!(
-                body,
-                "{inner}trip_unsampled(drive, sample, fault);\n{INDENT}}}\n"
-            );
+    /// The statements that trip the drive for the first fault that no sample shows; empty without any.
+    fn unsampled_faults(&self) -> String {
+        let periods = self.interface.bus_periods;
+        if periods.is_none() && self.watches().next().is_none() {
+            return String::new();
         }
+        let first = periods.map_or("HEXAGEN_FAULT_NONE".to_owned(), |periods| {
+            format!(
+                "hexagen_pass_period(&drive->bus, {})",
+                typed_number(periods)
+            )
+        });
+        let mut body = lines(&[&format!("hexagen_fault fault = {first};")]);
         for (Watch { word, most }, fault) in self.watches() {
             let word = self.names.local(word);
+            let is_found = format!("drive->state.{word} >= {}", typed_number(most));
             body.push_str(&lines(&[
-                &format!("if (drive->state.{word} >= {}) {{", typed_number(most)),
-                &format!("{INDENT}trip_unsampled(drive, sample, HEXAGEN_FAULT_{fault});"),
+                &format!("if (fault == HEXAGEN_FAULT_NONE && {is_found}) {{"),
+                &format!("{INDENT}fault = HEXAGEN_FAULT_{fault};"),
                 "}",
             ]));
         }
+        body.push_str(&lines(&[
+            "if (fault != HEXAGEN_FAULT_NONE) {",
+            &format!("{INDENT}trip_unsampled(drive, sample, fault);"),
+            "}",
+        ]));
+        body
+    }
+
+    fn period(&self) -> Method {
+        let mut body = lines(&["hexagen_checked checked;"]);
+        let seen = self.resolve(&mut body);
+        body.push_str(&self.unsampled_faults());
         let check = format!(
             "if (!hexagen_check(&drive->supervisor, &limits, {seen}, &drive->{}, &checked)) {{",
             self.demand()

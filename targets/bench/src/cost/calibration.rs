@@ -5,7 +5,7 @@ use super::longest::chip;
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_codegen::timing::{Times, Work, counted, digest, weighed, work};
+use hexagen_codegen::timing::{Group, Times, Work, counted, digest, weighed, work};
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use std::collections::BTreeMap;
@@ -17,6 +17,7 @@ use std::process::Command;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     digest: u64,
+    group: Group,
     work: Times<Work>,
 }
 
@@ -33,18 +34,26 @@ pub struct Drive {
 /// The drives of a target, and the compiler that made their code.
 pub type Counted = (Target, String, Vec<Drive>);
 
-/// Weights, and the largest error of a drive by the weights fitted to all others, as a part of the
-/// estimate.
+/// One figure of a counted drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Point {
+    group: Group,
+    work: Work,
+    time: f64,
+}
+
+/// Weights, and the errors that they are told with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fit {
     weights: Work,
-    error: f64,
+    errors: [f64; Group::COUNT],
 }
 
 impl Calibration {
     pub fn of(drive: &Prepared) -> Self {
         Self {
             digest: digest(&drive.generated.interface.spec_toml),
+            group: Group::of(&drive.spec),
             work: work(drive.generated.graph.program()),
         }
     }
@@ -96,8 +105,8 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
         let fits = fits(drives)?;
         let estimates = times(fits.map(|fit| {
             let weights = fit.weights.map(number).join(", ");
-            let error = number(fit.error);
-            format!("Estimate::of([{weights}], {error})")
+            let errors = fit.errors.map(number).join(", ");
+            format!("Estimate::of([{weights}], [{errors}])")
         }));
         let mut counted = BTreeMap::<u64, Times<u32>>::new();
         for drive in drives {
@@ -185,13 +194,16 @@ fn number(number: f64) -> String {
 fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     let typical = drives.iter().filter(|drive| drive.is_typical);
     let points = typical.map(|drive| {
-        let times = drive.times.map(f64::from);
-        drive.calibration.work.zip(times).into_array()
+        let Calibration { group, work, .. } = drive.calibration;
+        let figures = work.zip(drive.times.map(f64::from));
+        figures
+            .map(|(work, time)| Point { group, work, time })
+            .into_array()
     });
-    let points: Vec<[(Work, f64); 5]> = points.collect();
+    let points: Vec<[Point; 5]> = points.collect();
     let mut fits = vec![];
     for figure in 0..5 {
-        let points: Vec<(Work, f64)> = points.iter().map(|point| point[figure]).collect();
+        let points: Vec<Point> = points.iter().map(|point| point[figure]).collect();
         fits.push(fit(&points)?);
     }
     let fits: [Fit; 5] = fits
@@ -200,26 +212,29 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     Ok(Times::of(fits))
 }
 
-fn fit(points: &[(Work, f64)]) -> Result<Fit, BenchError> {
-    let mut error = 0.0_f64;
-    for (left_out, (work, time)) in points.iter().enumerate() {
+fn fit(points: &[Point]) -> Result<Fit, BenchError> {
+    let mut errors = [0.0_f64; Group::COUNT];
+    for (left_out, point) in points.iter().enumerate() {
         let mut others = points.to_vec();
         others.remove(left_out);
-        let estimate = weighed(&weights(&others)?, work);
-        error = error.max((time / estimate - 1.0).abs());
+        let estimate = weighed(&weights(&others)?, &point.work);
+        let error = (point.time / estimate - 1.0).abs();
+        for &group in point.group.tells_of() {
+            errors[group as usize] = errors[group as usize].max(error);
+        }
     }
     Ok(Fit {
         weights: weights(points)?,
-        error,
+        errors,
     })
 }
 
 /// Weights of 0 or more whose estimates have the least sum of relative errors: a linear program with
 /// an error above each point's deviation to both sides.
-fn weights(points: &[(Work, f64)]) -> Result<Work, BenchError> {
+fn weights(points: &[Point]) -> Result<Work, BenchError> {
     let mut program = Problem::new(OptimizationDirection::Minimize);
     let weights = Work::default().map(|_| program.add_var(0.0, (0.0, f64::INFINITY)));
-    for (work, time) in points {
+    for Point { work, time, .. } in points {
         let error = program.add_var(1.0, (0.0, f64::INFINITY));
         for (sign, bound) in [(1.0, ComparisonOp::Ge), (-1.0, ComparisonOp::Le)] {
             let parts = weights
@@ -245,21 +260,33 @@ mod tests {
     #[test]
     fn a_law_of_operations_is_found_and_an_outlier_is_told() {
         let point = |add: f64, product: f64| [1.0, 0.0, add, product, 0.0, 0.0, 0.0];
-        let exact = |work: Work| (work, 20.0 + 1.5 * work[2] + 4.0 * work[3]);
-        let mut points: Vec<(Work, f64)> = (1..9)
+        let exact = |work: Work| Point {
+            group: Group::StatedSensors,
+            work,
+            time: 20.0 + 1.5 * work[2] + 4.0 * work[3],
+        };
+        let mut points: Vec<Point> = (1..9)
             .map(|k| exact(point(f64::from(10 * k), f64::from(k * k % 7))))
             .collect();
         let found = fit(&points).expect("a fit");
         for (weight, expected) in [(0, 20.0), (2, 1.5), (3, 4.0)] {
             assert!((found.weights[weight] - expected).abs() < 1e-6);
         }
-        assert!(found.error < 1e-6);
-        // A drive that takes a quarter more changes no weight, and is the largest error.
-        let (work, time) = exact(point(35.0, 3.0));
-        points.push((work, 1.25 * time));
+        assert!(found.errors.iter().all(|&error| error < 1e-6));
+        // A drive that takes a quarter more changes no weight, and is the largest error of its group.
+        let usual = exact(point(35.0, 3.0));
+        points.push(Point {
+            group: Group::LearntHalls,
+            time: 1.25 * usual.time,
+            ..usual
+        });
         let found = fit(&points).expect("a fit");
         assert!((found.weights[2] - 1.5).abs() < 1e-6);
-        assert!((found.error - 0.25).abs() < 1e-6, "{}", found.error);
+        let [learnt, stated] = found.errors;
+        assert!(
+            (learnt - 0.25).abs() < 1e-6 && stated < 1e-6,
+            "{learnt}, {stated}"
+        );
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 use crate::targets::Target;
 use hexagen_lab::counted::Figures;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Goal of one step; `None` is no goal.
@@ -50,6 +51,50 @@ fn goals(target: Target) -> Vec<(&'static str, Goal)> {
     }
 }
 
+/// What a block adds to the normal path of a step: two steps that differ in nothing else, and its budget.
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// What it does.
+    pub name: &'static str,
+    /// Symbols of the steps with the block and without.
+    pub steps: [&'static str; 2],
+    /// Most instructions that it may add.
+    pub budget: i64,
+}
+
+/// The blocks of a target with a budget.
+pub fn blocks(target: Target) -> &'static [Block] {
+    match target {
+        Target::CortexM4 => &[
+            Block {
+                name: "learning of the Hall sensors",
+                steps: [
+                    "step_hoverboard_hub_pdcc_hall_learning",
+                    "step_hoverboard_hub_pdcc",
+                ],
+                budget: 40,
+            },
+            Block {
+                name: "field weakening below the speed at which it acts",
+                steps: [
+                    "step_mit_mini_cheetah_pdcc_field_weakening",
+                    "step_mit_mini_cheetah_pdcc",
+                ],
+                budget: 10,
+            },
+        ],
+        Target::CortexM0 | Target::Riscv32 => &[],
+    }
+}
+
+impl Block {
+    /// Instructions that the block adds to the normal path, if both steps were counted.
+    pub fn added(&self, figures: &BTreeMap<String, Figures>) -> Option<i64> {
+        let [with, without] = self.steps.map(|symbol| figures.get(symbol));
+        Some(i64::from(with?.normal) - i64::from(without?.normal))
+    }
+}
+
 /// The goal of a step function, if it has one.
 pub fn goal(target: Target, symbol: &str) -> Option<Goal> {
     let mut goals = goals(target).into_iter();
@@ -83,11 +128,15 @@ mod tests {
     use crate::cost::expected::Expected;
 
     #[test]
-    fn every_goal_is_of_a_step_that_is_counted() {
+    fn every_goal_and_budget_is_of_steps_that_are_counted() {
         for target in Target::ALL {
             let expected = Expected::read(target).expect("figures");
             for (symbol, _) in goals(target) {
                 assert!(expected.0.steps.contains_key(symbol), "{symbol}");
+            }
+            for block in blocks(target) {
+                let added = block.added(&expected.0.steps).expect("is counted");
+                assert!(added <= block.budget, "{}: {added}", block.name);
             }
         }
     }

@@ -21,7 +21,7 @@ use comfy_table::{CellAlignment, Table, presets};
 use count::{Counts, Inputs, count, supervision};
 use elf::{Code, Image, Isa};
 use expected::Expected;
-use goals::goal;
+use goals::{blocks, goal};
 use hexagen_lab::counted::{Counted, Figures, Longest};
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};
 use hexagen_lab::reproduction::counted_readings;
@@ -149,6 +149,20 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
             chip.name, chip.clock, chip.assumed
         );
         let figures = figures(&rows);
+        for block in blocks(target) {
+            let Some(added) = block.added(&figures) else {
+                continue;
+            };
+            let [with, without] = block.steps;
+            let told = format!(
+                "{}: {added} instructions on the normal path, {with} less {without}; budget {}",
+                block.name, block.budget
+            );
+            println!("{told}");
+            if added > block.budget && !options.accept {
+                rises.push(format!("{name}: {told}"));
+            }
+        }
         let drives: Vec<Drive> = rows.iter().filter_map(Row::calibrated).collect();
         if options.only.is_none() && !options.accept {
             rises.extend(calibration::rises(target, &release, &drives));
