@@ -34,7 +34,7 @@ pub fn interface(
         target: core.name(),
         clock: core.clock,
         period: inverter.t_s,
-        group: Group::of(spec),
+        group: Group::of(spec.controller.common().learning.halls),
     };
     let times = timing::of_step(scaled.graph.program(), asked);
     Interface {

@@ -7,7 +7,6 @@
 mod figures;
 
 use crate::ir::{Cost, PathCost, Program};
-use crate::spec::Spec;
 use figures::CHIPS;
 use fnv::FnvHasher;
 use std::fmt;
@@ -89,9 +88,9 @@ impl Group {
         }
     }
 
-    /// The group of a drive.
-    pub fn of(spec: &Spec) -> Self {
-        if spec.controller.common().learning.halls {
+    /// The group of a drive that learns the places of its Hall sensors, or does not.
+    pub const fn of(learns_halls: bool) -> Self {
+        if learns_halls {
             Self::LearntHalls
         } else {
             Self::StatedSensors

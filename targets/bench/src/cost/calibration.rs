@@ -53,7 +53,7 @@ impl Calibration {
     pub fn of(drive: &Prepared) -> Self {
         Self {
             digest: digest(&drive.generated.interface.spec_toml),
-            group: Group::of(&drive.spec),
+            group: Group::of(drive.generated.interface.hall_shifts.is_some()),
             work: work(drive.generated.graph.program()),
         }
     }
