@@ -262,27 +262,30 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
             .about("Places of the Hall sensors, learnt while the rotor turns steadily: how the three stand against each other, and at up to a tenth of `max_current` how all stand against the EMF, up to 15 electrical degrees, until `reset()`; only with `emf: observer` and `hall_capture: timer`"),
         |options| if_on(options.learning.halls),
     ),
+];
+
+/// Option of [`LOOP`].
+pub(crate) const HALL_LEARNING: &str = "hall_learning";
+
+/// Options of the controllers that limit a voltage. With whole vectors the current ripples even at a set-point of 0,
+/// which looks like another torque constant.
+pub(crate) const LIMITED: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<bool>(TORQUE_LEARNING, "on")
             .preset("off")
             .about("Torque constant, learnt while the rotor turns and hardly any current flows, from two thirds to 1.5 times the stated one, until `reset()`; `set_torque` uses it. Only with `emf: observer`, a measured bus, and `hall_capture: timer` or `rotor: angle`"),
         |options| if_on(options.learning.torque),
     ),
+    Row::of(
+        rule::choice::<bool>(FIELD_WEAKENING, "on")
+            .preset("off")
+            .about("Torque above the speed at which the bus voltage ends: the current turns against the field, with up to `max_current` whatever the set-point; only with `reference: proportional`. Needs a `maximum_speed` whose EMF does not exceed the bus, or a `bus_clamp`"),
+        |options| if_on(options.field_weakening),
+    ),
 ];
 
-/// Option of [`LOOP`].
-pub(crate) const HALL_LEARNING: &str = "hall_learning";
-
-/// Option of [`LOOP`].
+/// Option of [`LIMITED`].
 pub(crate) const TORQUE_LEARNING: &str = "torque_learning";
-
-/// Options of the controllers that limit a voltage.
-pub(crate) const LIMITED: &[Row<LoopOptions>] = &[Row::of(
-    rule::choice::<bool>(FIELD_WEAKENING, "on")
-        .preset("off")
-        .about("Torque above the speed at which the bus voltage ends: the current turns against the field, with up to `max_current` whatever the set-point; only with `reference: proportional`. Needs a `maximum_speed` whose EMF does not exceed the bus, or a `bus_clamp`"),
-    |options| if_on(options.field_weakening),
-)];
 
 /// Option of [`LIMITED`].
 pub(crate) const FIELD_WEAKENING: &str = "field_weakening";
