@@ -166,7 +166,7 @@ impl SpecAst {
         known: &[&str],
         fields: &[&str],
     ) {
-        let of_fields = schema::section_of_most(fields);
+        let of_fields = schema::section_of_most(fields).filter(|right| known.contains(right));
         self.malformed
             .push(catalogue::unknown_section(at, name, known, of_fields));
         if let Some(meant) = catalogue::nearest(name, known).or(of_fields) {

@@ -272,10 +272,13 @@ fn read_unit(
     ))
 }
 
-/// The unit of a spelling, and the basis that it says. `KV`, in any case, is what makers of outrunners call rpm/V.
+/// The unit of a spelling, and the basis that it says. `KV`, in any case, is what makers of
+/// outrunners call rpm/V; but `kV` is a kilovolt where no speed constant is asked for by name.
 fn unit_of(field: FieldRule, symbol: &str) -> Option<(Unit, Option<Basis>)> {
     let is_speed_constant = field.dimensions().contains(&Dimension::SpeedConstant);
-    if is_speed_constant && symbol.eq_ignore_ascii_case("kv") {
+    let is_kilovolt = symbol == "kV" && field.name != "speed_constant";
+    let is_kv = symbol.eq_ignore_ascii_case("kv") && !is_kilovolt;
+    if is_speed_constant && is_kv {
         let mut unit = Unit::from_symbol("rpm/V")?;
         symbol.clone_into(&mut unit.symbol);
         return Some((unit, None));

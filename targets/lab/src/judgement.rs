@@ -354,8 +354,8 @@ pub(crate) fn coarse_period(spec: &Spec) -> Option<String> {
     })
 }
 
-/// What makes the control period short enough for a turn of [`COARSE`] degrees: fewer PWM periods in it, where those
-/// are counted, or a PWM frequency, to two digits.
+/// What makes the control period short enough for a turn of [`COARSE`] degrees: fewer PWM periods in
+/// it where there are several, or a shorter PWM period, its frequency to two digits.
 fn shorter_period(spec: &Spec, degrees: f64) -> String {
     let per_control = f64::from(spec.inverter.pwm_per_control);
     let fewer = (per_control * COARSE / degrees).floor();
@@ -363,12 +363,20 @@ fn shorter_period(spec: &Spec, degrees: f64) -> String {
         let turn = significant(degrees * fewer / per_control, 2);
         return format!("lower `pwm_per_control` to {fewer} ({turn} degrees)");
     }
-    let least = per_control / spec.inverter.t_s * degrees / COARSE;
+    let least = degrees / COARSE / spec.inverter.t_s;
     let step = 10_f64.powf(least.log10().floor() - 1.0);
     let f_pwm = (least / step).ceil() * step;
-    let turn = significant(per_control * degrees / (spec.inverter.t_s * f_pwm), 2);
-    let f_pwm = engineering(f_pwm, "Hz");
-    format!("raise `f_pwm` to {f_pwm} ({turn} degrees)")
+    let turn = significant(degrees / (spec.inverter.t_s * f_pwm), 2);
+    let of_each = if per_control > 1.0 {
+        " and `pwm_per_control` of 1"
+    } else {
+        ""
+    };
+    format!(
+        "use a period of at most {} (`f_pwm` of at least {}{of_each}: {turn} degrees)",
+        engineering(1.0 / f_pwm, "s"),
+        engineering(f_pwm, "Hz"),
+    )
 }
 
 /// What is told of a step whose longest path takes most of the control period, or more.

@@ -169,8 +169,6 @@ pub fn bus_too_low(
     });
     let culprit = if drop > LIKELY[0] * volts {
         resistance
-    } else if shaft_speed.is_some() {
-        speed
     } else if is_confirmed && emf > 2.0 * volts {
         bus
     } else if !is_confirmed && emf > LIKELY[1] * volts {

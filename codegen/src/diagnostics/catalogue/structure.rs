@@ -17,8 +17,9 @@ pub fn unknown_section(
 ) -> Diagnostic {
     let mut advice = did_you_mean(name, known);
     if let Some(right) = of_fields.filter(|_| advice.is_empty()) {
-        advice = format!("; its fields are those of `{right}`, so call it that");
-        if name == "board" {
+        advice =
+            format!("; its fields are those of `{right}`, so call it that, or move them there");
+        if name == "board" && right == "inverter" {
             advice.push_str(
                 ", or name a board of the library above the sections, as `board: vesc-4`",
             );
@@ -114,9 +115,16 @@ pub fn other_name(at: &Location, section: &str, name: &str, remedy: &str) -> Dia
 pub fn misplaced_field(at: &Location, section: &str, name: &str, right: &str) -> Diagnostic {
     let message = match at {
         // Nothing but a controller and its options can be given there.
-        Location::Variant { .. } => format!(
-            "`{name}` is a field of `{right}`, not an option of the controller; state it in the motor's file, or in the board's"
-        ),
+        Location::Variant { .. } => {
+            let of_board = if right == "inverter" {
+                ", or in the board's"
+            } else {
+                ""
+            };
+            format!(
+                "`{name}` is a field of `{right}`, not an option of the controller; state it in the motor's file{of_board}"
+            )
+        }
         Location::Macro(_) | Location::File { .. } => {
             format!("`{section}` has no field `{name}`; move it to `{right}`")
         }

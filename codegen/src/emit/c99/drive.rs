@@ -366,11 +366,16 @@ impl Drive<'_> {
             )
         });
         let mut body = lines(&[&format!("hexagen_fault fault = {first};")]);
-        for (Watch { word, most }, fault) in self.watches() {
+        for (number, (Watch { word, most }, fault)) in self.watches().enumerate() {
             let word = self.names.local(word);
             let is_found = format!("drive->state.{word} >= {}", typed_number(most));
+            let is_next = if periods.is_some() || number > 0 {
+                format!("fault == HEXAGEN_FAULT_NONE && {is_found}")
+            } else {
+                is_found
+            };
             body.push_str(&lines(&[
-                &format!("if (fault == HEXAGEN_FAULT_NONE && {is_found}) {{"),
+                &format!("if ({is_next}) {{"),
                 &format!("{INDENT}fault = HEXAGEN_FAULT_{fault};"),
                 "}",
             ]));

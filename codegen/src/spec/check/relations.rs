@@ -159,7 +159,10 @@ pub(super) fn check_bus(
     };
     let values = [&stated.part, of_drop, &inductance];
     let absurd = catalogue::most_of_absurd([bus.si, raised], voltages, values);
-    let shaft_speed = shaft_speed(speed.si, whole.pole_pairs, [bus.si, emf, drop]);
+    // A speed that the shaft has without a load is none of the EMF's periods.
+    let is_of_shaft = (motor.no_load_speed.as_ref()).is_some_and(|no_load| speed.si <= no_load.si);
+    let shaft_speed =
+        shaft_speed(speed.si, whole.pole_pairs, [bus.si, emf, drop]).filter(|_| !is_of_shaft);
     // A constant that another field states, too, is right, and so it is where an electrical speed makes it too much.
     let is_right = is_confirmed || shaft_speed.is_some();
     if let Some(value) = absurd.filter(|value| value.field != stated.part.field || !is_right) {

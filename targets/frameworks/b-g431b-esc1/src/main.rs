@@ -57,9 +57,8 @@ fn ADC1_2() {
     critical_section::with(|token| {
         if let Some((control, board)) = CONTROL.borrow_ref_mut(token).as_mut() {
             let sample = board.sample();
-            match SET_POINT_MA {
-                Some(_) => control.resume(),
-                None => control.coast(),
+            if SET_POINT_MA.is_none() {
+                control.coast();
             }
             board::apply(control.step(&sample));
             let [a, b, _] = sample.adc();

@@ -62,9 +62,8 @@ mod app {
     fn control_period(context: control_period::Context) {
         let control_period::LocalResources { control, board, .. } = context.local;
         let sample = board.sample();
-        match SET_POINT_MA {
-            Some(_) => control.resume(),
-            None => control.coast(),
+        if SET_POINT_MA.is_none() {
+            control.coast();
         }
         board.apply(control.step(&sample));
     }

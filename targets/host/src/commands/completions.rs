@@ -16,7 +16,7 @@ use std::ffi::OsStr;
 const NAME: &str = "hexagen";
 
 /// Variable by which a script asks for completions.
-const VARIABLE: &str = "COMPLETE";
+const VARIABLE: &str = "HEXAGEN_COMPLETE";
 
 /// Options of `completions`.
 #[derive(Args, Clone, Debug)]

@@ -266,7 +266,7 @@ fn check_names_the_frequency_that_makes_the_period_short_enough() {
         judgement["verdict"].as_str().expect("a text").to_owned()
     };
     let verdict = verdict_at("2.5 kHz");
-    let told = "the rotor turns 23 electrical degrees in a control period: raise `f_pwm` to 3.9 kHz (15 degrees)";
+    let told = "the rotor turns 23 electrical degrees in a control period: use a period of at most 256.4 us (`f_pwm` of at least 3.9 kHz: 15 degrees)";
     assert!(verdict.contains(told), "{verdict}");
     let finer = verdict_at("3.9 kHz");
     assert!(finer.starts_with("works"), "{finer}");
@@ -571,14 +571,17 @@ fn shells_complete_commands_motors_boards_and_files() {
     for shell in ["bash", "zsh", "fish"] {
         let said = run(["completions", shell]);
         assert_eq!(said.code, 0, "{said:?}");
-        assert!(said.stdout.contains("COMPLETE"), "{shell}: {said:?}");
+        let asks = said.stdout.contains("HEXAGEN_COMPLETE");
+        assert!(asks, "{shell}: {said:?}");
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::write(folder.path().join("triangle.toml"), "").expect("is written");
     fs::write(folder.path().join("trial.txt"), "").expect("is written");
     let offered = |typed: &[&str]| {
         let mut asked = hexagen();
-        asked.current_dir(folder.path()).env("COMPLETE", "fish");
+        asked
+            .current_dir(folder.path())
+            .env("HEXAGEN_COMPLETE", "fish");
         let output = asked.args(["--", "hexagen"].iter().chain(typed)).output();
         let said = Said::from(output.expect("the program starts"));
         let words = said
