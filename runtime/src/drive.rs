@@ -337,14 +337,16 @@ impl<C: Control> ControlLoop<'_, C> {
 #[inline]
 fn unsampled_fault<C: Control>(set_point: &SetPoint<C>, law: &C::State) -> Option<Fault> {
     let of_bus = set_point.words.bus.pass_period();
-    let watched = [
-        (C::HAS_LOST_CURRENTS, Fault::Residual),
-        (C::IS_TOO_FAST, Fault::OverSpeed),
-    ];
-    let of_law = watched
-        .into_iter()
-        .find(|(watch, _)| watch.is_some_and(|is_found| is_found(law)));
-    of_bus.or(of_law.map(|(_, fault)| fault))
+    let is_found = |watch: Option<fn(&C::State) -> bool>| watch.is_some_and(|found| found(law));
+    if of_bus.is_some() {
+        of_bus
+    } else if is_found(C::HAS_LOST_CURRENTS) {
+        Some(Fault::Residual)
+    } else if is_found(C::IS_TOO_FAST) {
+        Some(Fault::OverSpeed)
+    } else {
+        None
+    }
 }
 
 /// A period that does not pass the check.
