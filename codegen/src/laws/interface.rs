@@ -15,7 +15,7 @@ use crate::scaling::Scaled;
 use crate::spec::{
     self, CurrentSensing, Envelope, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
 };
-use crate::timing::{self, Asked, Group};
+use crate::timing::{self, Asked};
 use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
@@ -34,7 +34,7 @@ pub fn interface(
         target: core.name(),
         clock: core.clock,
         period: inverter.t_s,
-        group: Group::of(spec.controller.common().learning.halls),
+        learns_halls: spec.controller.common().learning.halls,
     };
     let times = timing::of_step(scaled.graph.program(), asked);
     Interface {

@@ -54,46 +54,20 @@ pub struct Chip {
 pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
-    /// Errors by [`Group`]: the largest of a counted drive that [tells](Group::tells_of) of the
-    /// group, by the estimate fitted to all others, as a part of the estimate.
-    pub errors: [f64; Group::COUNT],
+    /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
+    /// estimate.
+    pub error: f64,
+    /// The same among drives that do not learn the places of their Hall sensors. An edge that is
+    /// learnt is work of few steps, of which the operations tell less than of the rest.
+    pub error_without_learning: f64,
 }
 
 impl Estimate {
-    const fn of(weights: Work, errors: [f64; Group::COUNT]) -> Self {
-        Self { weights, errors }
-    }
-}
-
-/// Drives whose estimates err alike. An edge that is learnt is work of few steps, of which the
-/// operations tell less than of the rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// The places of the Hall sensors are learnt.
-    LearntHalls,
-    /// They are those that the specification states, or there are none.
-    StatedSensors,
-}
-
-impl Group {
-    /// Number of groups.
-    pub const COUNT: usize = 2;
-
-    /// The groups of whose errors a drive of this group tells. Few drives with learnt sensors are
-    /// counted, so that theirs is that of all.
-    pub fn tells_of(self) -> &'static [Self] {
-        match self {
-            Self::LearntHalls => &[Self::LearntHalls],
-            Self::StatedSensors => &[Self::LearntHalls, Self::StatedSensors],
-        }
-    }
-
-    /// The group of a drive that learns the places of its Hall sensors, or does not.
-    pub const fn of(learns_halls: bool) -> Self {
-        if learns_halls {
-            Self::LearntHalls
-        } else {
-            Self::StatedSensors
+    const fn of(weights: Work, error: f64, error_without_learning: f64) -> Self {
+        Self {
+            weights,
+            error,
+            error_without_learning,
         }
     }
 }
@@ -225,8 +199,8 @@ pub struct Asked<'a> {
     pub clock: Option<f64>,
     /// Control period, seconds.
     pub period: f64,
-    /// The drive's group.
-    pub group: Group,
+    /// Whether the drive learns the places of its Hall sensors.
+    pub learns_halls: bool,
 }
 
 /// Times of a controller's step: on the chip of its core, on every chip if none is named.
@@ -245,7 +219,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
                 period: asked.period,
                 is_named: asked.target.is_some(),
                 times: counted.unwrap_or_else(|| chip.estimated(&work)),
-                errors: counted.is_none().then(|| chip.errors(asked.group)),
+                errors: counted.is_none().then(|| chip.errors(asked.learns_halls)),
             }
         })
         .collect()
@@ -269,9 +243,14 @@ impl Chip {
         counted.map(|(_, times)| *times)
     }
 
-    fn errors(&self, group: Group) -> Times<f64> {
-        self.estimates
-            .map(|estimate| estimate.errors[group as usize])
+    fn errors(&self, learns_halls: bool) -> Times<f64> {
+        self.estimates.map(|estimate| {
+            if learns_halls {
+                estimate.error
+            } else {
+                estimate.error_without_learning
+            }
+        })
     }
 
     fn estimated(&self, work: &Times<Work>) -> Times<u32> {
@@ -325,7 +304,7 @@ mod tests {
         name: "Chip",
         clock: 48e6,
         compiler: "rustc",
-        estimates: Times::of([Estimate::of(WEIGHTS, [0.2, 0.1]); 5]),
+        estimates: Times::of([Estimate::of(WEIGHTS, 0.2, 0.1); 5]),
         counted: &COUNTED,
     };
 
@@ -344,12 +323,9 @@ mod tests {
     }
 
     #[test]
-    fn an_estimate_has_the_error_of_its_group() {
-        let error = |group| CHIP.errors(group).any_cycles;
-        assert_eq!(
-            [Group::LearntHalls, Group::StatedSensors].map(error),
-            [0.2, 0.1]
-        );
+    fn an_estimate_has_the_error_of_drives_of_its_kind() {
+        let error = |learns_halls| CHIP.errors(learns_halls).any_cycles;
+        assert_eq!([true, false].map(error), [0.2, 0.1]);
     }
 
     #[test]
