@@ -314,18 +314,15 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
     Ok(())
 }
 
-/// Names before colons in a section's braces.
+/// Names of the fields in a section's braces.
 fn field_names(value: &[TokenTree]) -> Vec<String> {
     let [TokenTree::Group(group)] = value else {
         return vec![];
     };
-    let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
-    let names = tokens.windows(2).filter_map(|pair| match pair {
-        [TokenTree::Ident(name), TokenTree::Punct(colon)] if colon.as_char() == ':' => {
-            Some(name.to_string())
-        }
-        _ => None,
-    });
+    let entries = entries(group.stream());
+    let names = entries
+        .iter()
+        .filter_map(|entry| Some(entry.split().ok()?.0));
     names.collect()
 }
 

@@ -283,7 +283,7 @@ impl Drive<'_> {
 
     /// The trip for what no sample shows: a bus voltage, or what the law watches; empty without either.
     fn trip_unsampled(&self) -> String {
-        if !self.has_bus() && self.watches().next().is_none() {
+        if self.unsampled_faults().is_empty() {
             return String::new();
         }
         let inner = INDENT.repeat(2);

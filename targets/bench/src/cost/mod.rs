@@ -149,19 +149,9 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
             chip.name, chip.clock, chip.assumed
         );
         let figures = figures(&rows);
-        for block in blocks(target) {
-            let Some(added) = block.added(&figures) else {
-                continue;
-            };
-            let [with, without] = block.steps;
-            let told = format!(
-                "{}: {added} instructions on the normal path, {with} less {without}; budget {}",
-                block.name, block.budget
-            );
-            println!("{told}");
-            if added > block.budget && !options.accept {
-                rises.push(format!("{name}: {told}"));
-            }
+        let over_budget = print_budgets(target, &figures);
+        if !options.accept {
+            rises.extend(over_budget);
         }
         let drives: Vec<Drive> = rows.iter().filter_map(Row::calibrated).collect();
         if options.only.is_none() && !options.accept {
@@ -207,6 +197,26 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         "{}\naccept intended changes by `cargo xtask cost --accept`",
         rises.join("\n")
     )))
+}
+
+/// Prints what the blocks with a budget add; returns those that add more.
+fn print_budgets(target: Target, figures: &BTreeMap<String, Figures>) -> Vec<String> {
+    let mut over = vec![];
+    for block in blocks(target) {
+        let Some(added) = block.added(figures) else {
+            continue;
+        };
+        let [with, without] = block.steps;
+        let told = format!(
+            "{}: {added} instructions on the normal path, {with} less {without}; budget {}",
+            block.name, block.budget
+        );
+        println!("{told}");
+        if added > block.budget {
+            over.push(format!("{}: {told}", target.name()));
+        }
+    }
+    over
 }
 
 fn rows(firmware: &Firmware, options: &Options) -> Result<Vec<Row>, BenchError> {
