@@ -332,8 +332,8 @@ impl<C: Control> ControlLoop<'_, C> {
     }
 }
 
-/// The first fault that no sample shows: of the bus voltage, or of what the law watches. Ages the bus
-/// voltage by a period.
+/// Ages the bus voltage by a period, and returns the first fault that is not in the sample: one of the
+/// bus voltage, of lost currents, or of the speed.
 #[inline]
 fn unsampled_fault<C: Control>(set_point: &SetPoint<C>, law: &C::State) -> Option<Fault> {
     let of_bus = set_point.words.bus.pass_period();

@@ -114,7 +114,8 @@ impl FieldRule<'_> {
             .collect()
     }
 
-    /// The bases that a field's value takes with their meanings, those that say only what a wave's number is among them.
+    /// All bases that the field's value takes, with their meanings: [references](Self::references), and
+    /// which number of a wave it is.
     pub fn bases(self) -> &'static [(Basis, &'static str)] {
         match self.name {
             "speed_constant" => &[

@@ -9,7 +9,7 @@ use crate::motors::degrees_per_period;
 use crate::plant::PlantError;
 use crate::text::significant;
 use crate::times::Time;
-use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::diagnostics::{at_most, engineering};
 use hexagen_codegen::spec::Envelope;
 use hexagen_codegen::spec::{RotorSensing, Spec};
 use hexagen_codegen::timing::StepTime;
@@ -354,8 +354,8 @@ pub(crate) fn coarse_period(spec: &Spec) -> Option<String> {
     })
 }
 
-/// What makes the control period short enough for a turn of [`COARSE`] degrees: fewer PWM periods in
-/// it where there are several, or a shorter PWM period, its frequency to two digits.
+/// The remedy with which the rotor turns [`COARSE`] degrees at most: fewer PWM periods in a control
+/// period, if it has several, or else a PWM frequency of two digits.
 fn shorter_period(spec: &Spec, degrees: f64) -> String {
     let per_control = f64::from(spec.inverter.pwm_per_control);
     let fewer = (per_control * COARSE / degrees).floor();
@@ -374,7 +374,7 @@ fn shorter_period(spec: &Spec, degrees: f64) -> String {
     };
     format!(
         "use a period of at most {} (`f_pwm` of at least {}{of_each}: {turn} degrees)",
-        engineering(1.0 / f_pwm, "s"),
+        engineering(at_most(1.0 / f_pwm), "s"),
         engineering(f_pwm, "Hz"),
     )
 }

@@ -159,7 +159,7 @@ pub(super) fn check_bus(
     };
     let values = [&stated.part, of_drop, &inductance];
     let absurd = catalogue::most_of_absurd([bus.si, raised], voltages, values);
-    // A speed that the shaft has without a load is none of the EMF's periods.
+    // A rated speed up to the no-load speed is the shaft's.
     let is_of_shaft = (motor.no_load_speed.as_ref()).is_some_and(|no_load| speed.si <= no_load.si);
     let shaft_speed =
         shaft_speed(speed.si, whole.pole_pairs, [bus.si, emf, drop]).filter(|_| !is_of_shaft);

@@ -170,7 +170,7 @@ mod tests {
         [0, 1, 2].map(|phase| reference_phase((reference, SET_POINT), shape, phase, &TURN))
     }
 
-    /// A proportional current beside the EMF makes the torque of the set-point at every angle, without a neutral.
+    /// At every angle proportional currents make the set-point's torque, and add up to 0.
     #[test]
     fn a_proportional_reference_makes_constant_torque() {
         for shape in [
