@@ -40,7 +40,7 @@ pub(super) fn read(
     let Some(kind) = kind else {
         return (None, None);
     };
-    check_takers(section, kind, errors);
+    let section = &of_kind(section, kind, errors);
     // Own rules first; the names of others' options are known as well.
     let rules = kind.rules().into_iter().chain(controller::rules());
     let reader = Reader::new("controller", section, rules, fallback);
@@ -145,13 +145,15 @@ fn check_torque_learning(
     }
 }
 
-/// Options of another kind than the chosen one.
-fn check_takers(section: &Section, chosen: &Kind, errors: &mut Collector) {
-    for field in &section.fields {
+/// The section without options of other kinds than the chosen one, which are reported.
+fn of_kind(section: &Section, chosen: &Kind, errors: &mut Collector) -> Section {
+    let mut own = section.clone();
+    own.fields.retain(|field| {
         let takes = |kind: &Kind| kind.rules().iter().any(|rule| rule.name == field.name);
         let takers = KINDS.iter().filter(|kind| takes(kind));
         let takers: Vec<&str> = takers.map(|kind| kind.name).collect();
-        if !takers.is_empty() && !takers.contains(&chosen.name) {
+        let is_foreign = !takers.is_empty() && !takers.contains(&chosen.name);
+        if is_foreign {
             let at = &field.name_location;
             errors.push(catalogue::option_of_other_controller(
                 at,
@@ -160,7 +162,9 @@ fn check_takers(section: &Section, chosen: &Kind, errors: &mut Collector) {
                 &takers,
             ));
         }
-    }
+        !is_foreign
+    });
+    own
 }
 
 /// An available controller.
