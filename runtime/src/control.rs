@@ -183,6 +183,13 @@ impl<C: Control> Words<C> {
     pub fn bus(&self) -> BusWords<C> {
         self.bus.read()
     }
+
+    /// 1 while the measured bus voltage is fresh, as of this control period, else 0.
+    #[inline]
+    #[must_use]
+    pub fn bus_is_fresh(&self) -> Word {
+        Word(i32::from(!self.bus.is_stale()))
+    }
 }
 
 /// Unit of a word: a factor in bits of a number with 16 fraction bits, shifted left.

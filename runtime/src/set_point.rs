@@ -160,7 +160,8 @@ impl<C: Control> SetPoint<C> {
     /// period (the current offsets are among them), those of the law before it. `None` while the
     /// drive is not tripped, and if a reset interrupts the call.
     ///
-    /// A step is a function of these words: the period can be computed again from them, bit for bit.
+    /// A step is a function of these words, with `torque_learning` also of whether the bus voltage was
+    /// stale: the period can be computed again from them, bit for bit.
     /// A debugger finds them in the field `set_point.trip` of the drive.
     #[must_use]
     pub fn trip(&self, words: &mut [i32]) -> Option<Trip> {

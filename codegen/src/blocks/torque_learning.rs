@@ -7,7 +7,7 @@
 use super::set_point::SetPointWords;
 use super::{Lowering, Rotor};
 use crate::diagnostics::{engineering, significant};
-use crate::ir::{Coefficient, Expr, Interval, Memory, named};
+use crate::ir::{Coefficient, Demand, Expr, Interval, Memory, Param, named};
 
 /// The state word: stated over learnt torque constant.
 pub const TORQUE_RATIO: &str = "torque_ratio";
@@ -43,6 +43,8 @@ pub struct TorqueLearning<'b> {
     ratio: Memory<'b>,
     /// Periods of little current in a row.
     light: Memory<'b>,
+    /// 1 while the bus voltage is fresh.
+    bus_is_fresh: Param<'b>,
     /// The set-point's gain, V/A.
     gain: f64,
     /// Voltage along the shape per angle of a period.
@@ -59,6 +61,14 @@ impl<'b> TorqueLearning<'b> {
         let doc = "Control periods in a row whose current is little beside the EMF, at most 64.";
         let light =
             l.b.memory("light_periods", 0, Interval::new(0, SETTLED.into()), doc);
+        let doc = "1 while the bus voltage is fresh, else 0.";
+        let bus_is_fresh = l.b.param(
+            Demand::BusIsFresh,
+            "bus_is_fresh",
+            0,
+            Interval::new(0, 1),
+            doc,
+        );
         // What the observer makes of an EMF k_phase omega f: its projection on the shape, 2/3 k_t/k_phase f/|f|^2.
         let motor = &l.spec.motor;
         let flux = motor.emf_constant / f64::from(motor.pole_pairs);
@@ -68,6 +78,7 @@ impl<'b> TorqueLearning<'b> {
         Self {
             ratio,
             light,
+            bus_is_fresh,
             gain: set_point.gain.value,
             k_along: l.voltage_by_turn("k_along", along * flux, doc),
         }
@@ -120,7 +131,7 @@ impl<'b> TorqueLearning<'b> {
             "watch_torque",
             &[
                 "Counts the periods in a row in which the EMF is large beside the drop across the resistance at the set-point, and",
-                "well below the bus, beyond which it drives a current whatever is asked.",
+                "well below the bus, beyond which it drives a current whatever is asked; none with an old bus voltage."
             ],
         );
         let drop = LITTLE * l.spec.motor.resistance / self.gain;
@@ -143,7 +154,8 @@ impl<'b> TorqueLearning<'b> {
             let emf_now = self.k_along * rotor.step_angle;
             let is_light = emf_now.abs().is_above(k_drop * j.abs() + least);
             let is_free = (k_free * v_bus).is_above((emf_now + error).abs());
-            let light_new = (is_light & is_free).choose((self.light.read() + 1).min(SETTLED), 0);
+            let is_known = self.bus_is_fresh.read().is_at_least(1);
+            let light_new = (is_light & is_free & is_known).choose((self.light.read() + 1).min(SETTLED), 0);
         }
         (self.light, light_new)
     }

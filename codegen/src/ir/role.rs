@@ -79,6 +79,8 @@ pub enum Demand {
     Bus,
     /// The ratio of nominal to measured bus voltage.
     BusRatio,
+    /// 1 while the measured bus voltage is fresh, else 0: the runtime's, no setter's.
+    BusIsFresh,
 }
 
 impl Demand {

@@ -66,6 +66,8 @@ struct Places {
     /// Index of the set-point that a reset clears.
     set_point: usize,
     has_speed: bool,
+    /// Index of the word that tells a fresh bus voltage.
+    bus_is_fresh: Option<usize>,
 }
 
 impl Places {
@@ -85,6 +87,7 @@ impl Places {
             legs: three(Output::Leg)?,
             set_point: demand(Demand::Speed).or_else(|| demand(Demand::Current))?,
             has_speed: demand(Demand::Speed).is_some(),
+            bus_is_fresh: demand(Demand::BusIsFresh),
         })
     }
 }
@@ -212,6 +215,9 @@ impl Subject for Interpreted<'_> {
     fn step(&mut self, sample: &Sample) -> Legs {
         if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
             self.supervisor.trip(fault);
+        }
+        if let Some(place) = self.places.bus_is_fresh {
+            self.machine.params[place] = (!self.bus_is_stale()).into();
         }
         for (place, most, fault) in self.watches.into_iter().flatten() {
             if self.machine.state[place] >= most {

@@ -314,7 +314,9 @@ fn named(name: &str, is_used: bool) -> Source {
 fn read_words(program: &Program, function: &Function) -> Source {
     let read = demands_read(program, function);
     let is_read = |demand: Demand| read.contains(&demand);
-    let single = SINGLE.into_iter().filter(|&(demand, _)| is_read(demand));
+    let fresh = (Demand::BusIsFresh, "bus_is_fresh");
+    let single = SINGLE.into_iter().chain([fresh]);
+    let single = single.filter(|&(demand, _)| is_read(demand));
     let single = single.filter_map(|(demand, method)| {
         let (name, method) = (snake(&program.param(demand)?.name), Source::of(method));
         Some(quote!(let #name = set_point.#method();))

@@ -514,8 +514,9 @@ impl<W: Word> BitTrue<W> {
                         residual_count = watch.count(&self.state, residual, emf_error, demand);
                     }
                     if let Some(learning) = &self.torque {
-                        let told = [j, emf_error[0], self.v_bus];
-                        light = learning.count(light, told, angle.speed.step);
+                        let told = [j, emf_error[0]];
+                        let v_bus = (!self.bus_is_stale()).then_some(self.v_bus);
+                        light = learning.count(light, told, v_bus, angle.speed.step);
                     }
                     let e = emf::corrected(k, mean(start, end), emf_error, shape);
                     (e, if delayed { self.state.e_next } else { e })

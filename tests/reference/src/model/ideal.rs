@@ -508,8 +508,10 @@ impl Ideal {
                     residual_count =
                         self.counted_residual(residual, emf_error, [current, step_angle]);
                     if let Some(learning) = &self.torque {
-                        let told = [current, emf_error[0], self.v_bus];
-                        light = learning.count(light, told, step_angle);
+                        let told = [current, emf_error[0]];
+                        let is_fresh = self.bus_watch.is_some_and(|watch| !watch.is_stale());
+                        let v_bus = is_fresh.then_some(self.v_bus);
+                        light = learning.count(light, told, v_bus, step_angle);
                     }
                     let e = self.corrected_emf(&e, emf_error, &shape);
                     let [next_a, next_b] = self.state.e_next;

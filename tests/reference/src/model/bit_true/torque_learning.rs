@@ -80,9 +80,13 @@ impl<W: Word> TorqueLearning<W> {
         within(old + self.learn.mul(beyond), self.limits[0], self.limits[1])
     }
 
-    /// Periods in a row behind this one in which the EMF tells the constant; `error`: its error along the shape.
+    /// Periods in a row behind this one in which the EMF tells the constant; `error`: its error along the shape,
+    /// `v_bus`: `None` while the bus voltage is stale.
     #[inline]
-    pub fn count(&self, light: W, [j, error, v_bus]: [W; 3], step_angle: W) -> W {
+    pub fn count(&self, light: W, [j, error]: [W; 2], v_bus: Option<W>, step_angle: W) -> W {
+        let Some(v_bus) = v_bus else {
+            return word(0.0);
+        };
         let drop = self.little.mul(j.abs()) + self.least;
         let emf = self.along.mul(step_angle);
         let is_light = emf.abs() > drop;

@@ -59,8 +59,17 @@ impl TorqueLearning {
         (learnt.ratio + rise).clamp(2.0 / 3.0, 1.5)
     }
 
-    /// Periods of little current in a row behind this one.
-    pub fn count(&self, light: f64, [current, error, v_bus]: [f64; 3], step_angle: f64) -> f64 {
+    /// Periods of little current in a row behind this one; `v_bus`: `None` while the bus voltage is stale.
+    pub fn count(
+        &self,
+        light: f64,
+        [current, error]: [f64; 2],
+        v_bus: Option<f64>,
+        step_angle: f64,
+    ) -> f64 {
+        let Some(v_bus) = v_bus else {
+            return 0.0;
+        };
         let drop = self.little * current.abs() + self.v_bus / 16.0;
         let emf = self.along * step_angle;
         let is_light = emf.abs() > drop;
