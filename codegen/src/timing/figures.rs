@@ -10,6 +10,7 @@ pub static CHIPS: [Chip; 3] = [
         clock: 170e6,
         assumed: "code in flash",
         compiler: "rustc 1.96.0",
+        in_c: Times::of([1.32, 1.62, 1.7, 1.78, 2.08]),
         estimates: Times::of([
             Estimate::of(
                 [26.98, 0.2497, 1.635, 2.250, 1.051, 0.0000, 0.0000],
@@ -71,10 +72,10 @@ pub static CHIPS: [Chip; 3] = [
                 Times::of([309, 351, 1284, 765, 2825]),
             ),
             (0x76fe_535f_6273_db29, Times::of([93, 93, 380, 603, 2377])),
-            (0x7d33_8175_6526_1088, Times::of([161, 237, 864, 874, 3373])),
+            (0x7d33_8175_6526_1088, Times::of([161, 237, 864, 874, 3369])),
             (
                 0x8407_c3f5_2fb6_f49f,
-                Times::of([250, 474, 1726, 1120, 4215]),
+                Times::of([250, 474, 1726, 1120, 4219]),
             ),
             (
                 0x8dc3_04e1_1b00_c0f7,
@@ -102,7 +103,7 @@ pub static CHIPS: [Chip; 3] = [
                 0xba96_2cfb_51b6_912c,
                 Times::of([502, 594, 1912, 996, 3403]),
             ),
-            (0xbfbe_e41c_91ae_7658, Times::of([87, 132, 523, 820, 3115])),
+            (0xbfbe_e41c_91ae_7658, Times::of([87, 132, 523, 824, 3125])),
             (0xc689_5e49_ef78_9724, Times::of([159, 275, 955, 893, 3216])),
             (
                 0xdbe2_c1c4_9a94_6e4c,
@@ -114,7 +115,7 @@ pub static CHIPS: [Chip; 3] = [
             ),
             (
                 0xe195_b96b_6a4a_c571,
-                Times::of([294, 499, 1792, 1117, 4136]),
+                Times::of([294, 499, 1792, 1117, 4141]),
             ),
             (
                 0xe2ba_cb3c_507b_c77b,
@@ -135,6 +136,7 @@ pub static CHIPS: [Chip; 3] = [
         clock: 48e6,
         assumed: "multiplier of one cycle, code in flash",
         compiler: "rustc 1.96.0",
+        in_c: Times::of([1.48, 1.48, 1.46, 3.45, 3.2]),
         estimates: Times::of([
             Estimate::of(
                 [19.52, 0.0000, 1.240, 24.14, 11.50, 0.0000, 0.0000],
@@ -243,6 +245,7 @@ pub static CHIPS: [Chip; 3] = [
         clock: 150e6,
         assumed: "core Hazard3, code in a bank of SRAM of its own",
         compiler: "rustc 1.96.0",
+        in_c: Times::of([1.25, 1.4, 1.61, 3.12, 3.12]),
         estimates: Times::of([
             Estimate::of(
                 [66.36, 0.4197, 1.429, 3.347, 0.9909, 0.0000, 0.0000],

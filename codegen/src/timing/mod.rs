@@ -44,6 +44,8 @@ pub struct Chip {
     pub assumed: &'static str,
     /// The compiler whose code was counted.
     pub compiler: &'static str,
+    /// Greatest figures of a counted drive in C over those of the same drive in Rust.
+    pub in_c: Times<f64>,
     estimates: Times<Estimate>,
     /// Figures of drives by [`digest`].
     counted: &'static [(u64, Times<u32>)],
@@ -160,6 +162,16 @@ impl StepTime {
         (f64::from(self.times.any_cycles) * (1.0 + error)).ceil()
     }
 
+    /// Cycles of a step in control in C: what the counted drives take more there, at most.
+    pub fn control_cycles_in_c(&self) -> f64 {
+        f64::from(self.told().control_cycles) * self.chip.in_c.control_cycles
+    }
+
+    /// Cycles of any step at most, in C.
+    pub fn most_cycles_in_c(&self) -> f64 {
+        self.most_cycles() * self.chip.in_c.any_cycles
+    }
+
     /// Whether a step may take longer than the control period on the core that is named.
     pub fn is_too_long(&self) -> bool {
         self.is_named && self.most_cycles() > self.cycles_of_period()
@@ -223,6 +235,12 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
             }
         })
         .collect()
+}
+
+/// Greatest figures of drives in C over those in Rust on a core, and the compiler.
+pub fn in_c(target: &str) -> Option<(&'static str, Times<f64>)> {
+    let chip = CHIPS.iter().find(|chip| chip.target == target)?;
+    Some((chip.compiler, chip.in_c))
 }
 
 /// Counted times of a drive on a core by the [`digest`] of its specification, and the compiler.
@@ -304,6 +322,7 @@ mod tests {
         name: "Chip",
         clock: 48e6,
         compiler: "rustc",
+        in_c: Times::of([2.0; 5]),
         estimates: Times::of([Estimate::of(WEIGHTS, 0.2, 0.1); 5]),
         counted: &COUNTED,
     };

@@ -49,17 +49,19 @@ impl From<&StepTime> for Time {
 }
 
 /// A line of the first core: that which is named, else the Cortex-M4. Estimates are told as about; the worst, with
-/// start, trips and braking, includes their error.
+/// start, trips and braking, includes their error, that in C the most that a counted drive takes more there.
 pub fn sentence(times: &[StepTime]) -> String {
     let Some(time) = times.first() else {
         return "not known".to_owned();
     };
     let in_control = time.told().control_cycles;
     format!(
-        "{} {in_control} cycles, {} % of a period, at worst {} %; Rust (C more), {}{}, {}",
+        "{} {in_control} cycles, {} % of a period, worst {} %; in C {} and {} %; {}{}, {}",
         if time.is_bound() { "up to" } else { "about" },
         time.percent_of_period(in_control),
         time.percent_of_period(time.most_cycles() as u32),
+        time.percent_of_period(time.control_cycles_in_c() as u32),
+        time.percent_of_period(time.most_cycles_in_c() as u32),
         if time.is_named { "" } else { "if " },
         time.chip.core,
         engineering(time.clock, "Hz"),
@@ -82,16 +84,13 @@ mod tests {
         };
         let (counted, data) = told("pdcc");
         assert!(counted.starts_with("up to "), "{counted}");
-        let core = " %; Rust (C more), if Cortex-M4, 170 MHz";
+        let core = " %; if Cortex-M4, 170 MHz";
         assert!(counted.ends_with(core), "{counted}");
         assert_eq!(data.len(), 3);
         assert_eq!(data[0].error_pct, None);
         let (estimated, data) = told("pdcc:delay=0,target=cortex_m0,core_clock=64 MHz");
         assert!(estimated.starts_with("about "), "{estimated}");
-        assert!(
-            estimated.ends_with(" %; Rust (C more), Cortex-M0, 64 MHz"),
-            "{estimated}"
-        );
+        assert!(estimated.ends_with(" %; Cortex-M0, 64 MHz"), "{estimated}");
         assert!(data[0].error_pct.is_some_and(|error| error > 1.0));
     }
 }

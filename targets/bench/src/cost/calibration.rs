@@ -5,7 +5,8 @@ use super::longest::chip;
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_codegen::timing::{Times, Work, counted, digest, weighed, work};
+use hexagen_codegen::timing::{self, Times, Work, counted, digest, weighed, work};
+use hexagen_lab::counted::Figures;
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use std::collections::BTreeMap;
@@ -32,7 +33,14 @@ pub struct Drive {
 }
 
 /// The drives of a target, and the compiler that made their code.
-pub type Counted = (Target, String, Vec<Drive>);
+#[derive(Clone, Debug, PartialEq)]
+pub struct Counted {
+    pub target: Target,
+    pub compiler: String,
+    pub drives: Vec<Drive>,
+    /// Greatest figures of a drive in C over those of the same drive in Rust.
+    pub in_c: Times<f64>,
+}
 
 /// One figure of a counted drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,12 +74,44 @@ pub fn release(compiler: &str) -> String {
     words.join(" ")
 }
 
+/// Greatest figures of a drive in C over those of the same drive in Rust: of `step_x_c` over `step_x`.
+pub fn in_c(figures: &BTreeMap<String, Figures>) -> Times<f64> {
+    let pairs = figures.iter().filter_map(|(symbol, in_c)| {
+        let in_rust = figures.get(symbol.strip_suffix("_c")?)?;
+        Some(in_c.times()?.zip(in_rust.times()?))
+    });
+    let ratios = pairs.map(|pair| pair.map(|(c, rust)| f64::from(c) / f64::from(rust)));
+    let most = |most: Times<f64>, ratio| most.zip(ratio).map(|(one, other)| one.max(other));
+    // Rounded up to hundredths: what is told is no less than what was counted.
+    let most = ratios.fold(Times::of([1.0; 5]), most);
+    most.map(|ratio| (100.0 * ratio).ceil() / 100.0)
+}
+
 /// Drives whose counted times exceed those that the generator tells. Those of another compiler are
 /// not compared.
-pub fn rises(target: Target, compiler: &str, drives: &[Drive]) -> Vec<String> {
-    let mut rises = vec![];
+pub fn rises(of: &Counted) -> Vec<String> {
+    let Counted {
+        target,
+        compiler,
+        drives,
+        in_c,
+    } = of;
+    let (target, mut rises) = (*target, vec![]);
+    if let Some((by, known)) = timing::in_c(&core(target))
+        && by == compiler
+        && known
+            .zip(*in_c)
+            .into_array()
+            .iter()
+            .any(|(known, found)| found > known)
+    {
+        rises.push(format!(
+            "{}: C over Rust {in_c:?}, and the generator tells {known:?}",
+            target.name()
+        ));
+    }
     for drive in drives {
-        let Some((of, known)) = counted(&core(target), drive.calibration.digest) else {
+        let Some((by, known)) = counted(&core(target), drive.calibration.digest) else {
             rises.push(format!(
                 "{}: {}: the generator does not know its times",
                 target.name(),
@@ -80,7 +120,7 @@ pub fn rises(target: Target, compiler: &str, drives: &[Drive]) -> Vec<String> {
             continue;
         };
         let pairs = known.zip(drive.times).into_array();
-        if of == compiler && pairs.iter().any(|(known, found)| found > known) {
+        if by == compiler && pairs.iter().any(|(known, found)| found > known) {
             rises.push(format!(
                 "{}: {}: times {:?}, and the generator tells {known:?}",
                 target.name(),
@@ -101,7 +141,14 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
         use super::{Chip, Estimate, Times};\n\n"
         .to_owned();
     let mut chips = String::new();
-    for (target, compiler, drives) in targets {
+    for Counted {
+        target,
+        compiler,
+        drives,
+        in_c,
+    } in targets
+    {
+        let in_c = times(in_c.map(|ratio| format!("{ratio:?}")));
         let chip = chip(*target);
         let fits = fits(drives)?;
         let estimates = times(fits.map(|fit| {
@@ -135,7 +182,7 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
         let _ = write!(
             chips,
             "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, assumed: {:?}, compiler: {compiler:?}, \
-             estimates: {estimates}, counted: &[{counted}] }},",
+             in_c: {in_c}, estimates: {estimates}, counted: &[{counted}] }},",
             core(*target),
             name(*target),
             chip.name,

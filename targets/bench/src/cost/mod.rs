@@ -153,11 +153,16 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         if !options.accept {
             rises.extend(over_budget);
         }
-        let drives: Vec<Drive> = rows.iter().filter_map(Row::calibrated).collect();
+        let counted = calibration::Counted {
+            target,
+            compiler: release,
+            drives: rows.iter().filter_map(Row::calibrated).collect(),
+            in_c: calibration::in_c(&figures),
+        };
         if options.only.is_none() && !options.accept {
-            rises.extend(calibration::rises(target, &release, &drives));
+            rises.extend(calibration::rises(&counted));
         }
-        calibrated.push((target, release, drives));
+        calibrated.push(counted);
         if options.accept {
             let compiler = compiler.to_owned();
             let mut steps = figures;
