@@ -10,6 +10,10 @@ fn widen(range: &Part) -> String {
     match range.field {
         "shunt" => "take a smaller `shunt` or `amplifier_gain`".to_owned(),
         "adc_gain" => "take sensors of a larger `adc_gain`".to_owned(),
+        "amplifier_swing" => {
+            "raise `amplifier_swing` if the amplifier's output follows farther, or take a smaller `shunt` or `amplifier_gain`"
+                .to_owned()
+        }
         field => format!("widen `{field}`"),
     }
 }

@@ -279,11 +279,15 @@ pub fn needed_field(
     setting: &str,
     [section, name, example]: [&str; 3],
 ) -> Diagnostic {
+    let what = match name {
+        "hall_timer_clock" => ", the clock of a timer that captures the edges",
+        _ => "",
+    };
     Diagnostic::new(
         Code::DependentField,
         at,
         format!(
-            "`{setting}` needs the field `{name}` of `{section}`; add it, for example `{name}: {example}`"
+            "`{setting}` needs the field `{name}` of `{section}`{what}; add it, for example `{name}: {example}`"
         ),
     )
 }

@@ -145,8 +145,14 @@ pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnost
 
 /// A sector at the minimum speed lasts longer than the Hall timer counts. `ticks`: its length;
 /// `least`: the lowest accepted speed, rad/s; `clock`: the fastest accepted capture clock, hertz
-/// (none when edges are sampled).
-pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -> Diagnostic {
+/// (none when edges are sampled); `culprit`: the clock as written where nobody stated the speed.
+pub fn minimum_speed(
+    speed: &Part,
+    ticks: f64,
+    least: f64,
+    clock: Option<f64>,
+    culprit: Option<&Part>,
+) -> Diagnostic {
     let slower = clock.map_or_else(
         || "lengthen the control period".to_owned(),
         |clock| {
@@ -156,7 +162,7 @@ pub fn minimum_speed(speed: &Part, ticks: f64, least: f64, clock: Option<f64>) -
     );
     Diagnostic::new(
         Code::MinimumSpeed,
-        &speed.location,
+        &culprit.unwrap_or(speed).location,
         format!(
             "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; {slower}, or raise the speed to {}",
             speed.given,

@@ -51,7 +51,7 @@ pub(super) fn finish(
     let room = TripRoom {
         max: reader.part("max_current", || engineering(drive.max_current, "A")),
         level: reader.part("trip_current", || engineering(trip, "A")),
-        range: adc.part.clone(),
+        range: adc.bound.clone(),
         peak: drive.peak(),
         trip,
         needed: TRIP_AT_LEAST * drive.peak(),
@@ -99,14 +99,14 @@ fn beyond_sensors(
         && trip.si > shown * (1.0 + 1e-9)
     {
         return Some(catalogue::trip_above_adc_range(
-            &trip.part, &adc.part, shown,
+            &trip.part, &adc.bound, shown,
         ));
     }
     (inverter.max_current.is_none() && adc.reach < rated.si).then(|| {
         // Whole vectors and bands need more than the reference's peak.
         let modulated = drive.filter(|drive| drive.reach() <= drive.peak());
         let most = modulated.map(|drive| drive.largest_below(greatest_trip(inverter, adc)));
-        catalogue::adc_range_too_small(&adc.part, &rated.part, adc.reach, most)
+        catalogue::adc_range_too_small(&adc.bound, &rated.part, adc.reach, most)
     })
 }
 

@@ -61,6 +61,8 @@ pub(super) struct Adc {
     pub linear: f64,
     /// `adc_range`, `adc_gain` or `shunt` as written.
     pub part: Part,
+    /// What bounds `reach`: the same, or `amplifier_swing`.
+    pub bound: Part,
 }
 
 /// Default tolerance of a calibrated offset over the range of one sign.
@@ -335,6 +337,7 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
         each: gains,
         linear,
         part,
+        swing,
     } = gains?;
     let gain = *gains.first()?;
     if let Some(other) = gains
@@ -355,17 +358,19 @@ fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Op
         })
         .collect();
     let reaches = gains.iter().zip(&offsets);
-    let reach = reaches
+    let counted = reaches
         .map(|(gain, offset)| gain * f64::from((*offset).min(full - offset)))
-        .fold(linear, f64::min);
+        .fold(f64::INFINITY, f64::min);
+    let bound = swing.filter(|_| linear < counted);
     let offset_tolerance = read_offset_tolerance(reader, gain, full, errors)?;
     Some(Adc {
         bits: bits?,
         gain,
         sensors,
         offset_tolerance,
-        reach,
+        reach: linear.min(counted),
         linear,
+        bound: bound.unwrap_or_else(|| part.clone()),
         part,
     })
 }
@@ -378,6 +383,8 @@ struct Gains {
     linear: f64,
     /// `adc_range`, `adc_gain` or `shunt` as written.
     part: Part,
+    /// `amplifier_swing` as written.
+    swing: Option<Part>,
 }
 
 /// Fields that say together what a count is worth.
@@ -422,6 +429,7 @@ fn read_gains(
             each,
             linear: f64::INFINITY,
             part,
+            swing: None,
         });
     };
     for name in ["adc_range", "adc_gain"] {
@@ -447,8 +455,11 @@ fn read_gains(
     let sensitivity = ohm.si * amplified.si;
     Some(Gains {
         each: all(volt.si / (counts * sensitivity)),
-        linear: swing.map_or(f64::INFINITY, |swing| swing.si / sensitivity),
+        linear: swing
+            .as_ref()
+            .map_or(f64::INFINITY, |swing| swing.si / sensitivity),
         part: ohm.part,
+        swing: swing.map(|swing| swing.part),
     })
 }
 

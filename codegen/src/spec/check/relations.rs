@@ -296,7 +296,16 @@ pub(super) fn check_speeds(
         let least = minimum * ticks / GREATEST_AGE;
         let is_timed = matches!(clocked, RotorSensing::TimedHalls { .. });
         let clock = is_timed.then_some(per_second * GREATEST_AGE / ticks);
-        errors.push(catalogue::minimum_speed(minimum_part, ticks, least, clock));
+        let stated = inverter.hall_timer_clock.as_ref();
+        let culprit = stated.filter(|_| is_timed && inverter.minimum_speed.is_none());
+        let culprit = culprit.map(|clock| &clock.part);
+        errors.push(catalogue::minimum_speed(
+            minimum_part,
+            ticks,
+            least,
+            clock,
+            culprit,
+        ));
     }
     Some(())
 }

@@ -74,7 +74,9 @@ const NAMES: [(&str, &[&str]); 14] = [
 
 /// What data sheets print and no controller here uses. Their letters are near to those of other fields:
 /// `idle_current` to `rated_current`.
-const UNUSED: [&str; 26] = [
+const UNUSED: [&str; 28] = [
+    "power",
+    "output_power",
     "idle_current",
     "no_load_current",
     "stall_current",

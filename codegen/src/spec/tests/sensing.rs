@@ -186,6 +186,10 @@ fn an_amplifier_that_saturates_bounds_the_trip_level() {
     let text = told(&format!("{swing}\ntrip_current = \"140 A\""));
     assert!(text.contains("HX0306"), "{text}");
     assert!(text.contains("measure up to 134.9 A only"), "{text}");
+    assert!(text.contains("raise `amplifier_swing`"), "{text}");
+    let text = told(&format!("{SHUNT}amplifier_swing = \"0.135 V\""));
+    let named = "HX0305]: `amplifier_swing`: 0.135 V measures up to 13.5 A";
+    assert!(text.contains(named), "{text}");
     let text = told("adc_range = \"40 A\"\namplifier_swing = \"1.35 V\"");
     assert!(text.contains("has an effect only with `shunt`"), "{text}");
 }
