@@ -5,12 +5,12 @@
 //! motor file do not count. The motor file's own controller is tried beside them, where it has options.
 //!
 //! The rule takes what must not fail first, then what costs: no trip, torque, ripple, both again with
-//! deviations of motor and bus, the speed up to which the torque is held, and of those that are alike the
-//! one whose longest step takes the fewest cycles.
+//! deviations of motor and bus, the speed up to which the torque is held, and the cycles of the longest
+//! step. Of those that are alike in all the motor file's own comes first, then the default.
 
 use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
-use crate::judgement::coarse_period;
+use crate::period::long_period;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
 use hexagen_codegen::diagnostics::Code;
@@ -65,6 +65,9 @@ pub const RIPPLE_ALIKE: f64 = 2.0;
 /// Speed up to which the torque is held that two variants may differ by and count as alike, percent of
 /// the rated one.
 pub const LIMIT_ALIKE: f64 = 2.0;
+
+/// Cycles over the fewest that count as alike: estimates err by about as much (`hexagen_codegen::timing`).
+const CYCLES_ALIKE: f64 = 1.12;
 
 /// A change of the plant, of which the nominal bus voltage is known.
 type Deviate = fn(&mut PlantOptions, f64);
@@ -152,6 +155,8 @@ pub struct Advice {
     pub reason: String,
     /// Options of the motor's file that stay whatever the controller, with their values.
     pub kept: Vec<(String, String)>,
+    /// Options of the motor's file that the other variants do without.
+    pub left_out: Vec<String>,
 }
 
 /// Torque and ripple of the worst run of several.
@@ -209,6 +214,7 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         kept: kept(motor)
             .map(|field| (field.name.clone(), field.value.to_string()))
             .collect(),
+        left_out: left_out(motor),
     };
     let mut left = advice.alike();
     let limits = left.par_iter().map(|&k| {
@@ -227,9 +233,9 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         );
     }
     if advice.recommended.is_none()
-        && let Some(coarse) = first.and_then(|drive| coarse_period(&drive.spec))
+        && let Some(long) = first.and_then(|drive| long_period(&drive.spec))
     {
-        advice.reason.push_str(&coarse);
+        let _ = write!(advice.reason, "; {long}");
     }
     Ok(advice)
 }
@@ -257,6 +263,16 @@ const KEPT: [&str; 4] = [
 fn kept(motor: &SelectedMotor) -> impl Iterator<Item = &Field> {
     let fields = motor.ast.controller.fields.iter();
     fields.filter(|field| OF_CORE.iter().chain(&KEPT).any(|name| field.name == *name))
+}
+
+/// Options of a motor's file that neither stay nor are tried.
+fn left_out(motor: &SelectedMotor) -> Vec<String> {
+    let kept: Vec<&str> = kept(motor).map(|field| field.name.as_str()).collect();
+    let is_tried = |name: &str| VARIANTS.iter().any(|one| one.contains(&format!("{name}=")));
+    let fields = motor.ast.controller.fields.iter();
+    let names = fields.map(|field| field.name.as_str());
+    let names = names.filter(|name| *name != "kind" && !kept.contains(name) && !is_tried(name));
+    names.map(str::to_owned).collect()
 }
 
 /// All variants of a motor.
@@ -332,9 +348,10 @@ fn try_drive(variant: &'static str, drive: &Prepared) -> Result<Tried, LabError>
     for (name, deviate) in DEVIATIONS {
         let mut plant = PlantOptions::default();
         deviate(&mut plant, drive.spec.inverter.v_bus);
-        // Below `bus_min` a drive trips, as it should.
-        if let BusSource::Measured { min, .. } = drive.spec.inverter.bus {
-            plant.v_bus = plant.v_bus.map(|bus| bus.max(ABOVE_LEAST * min));
+        // Below `bus_min` a drive trips, and in its fade it makes less, as it should.
+        if let BusSource::Measured { min, motoring, .. } = drive.spec.inverter.bus {
+            let least = motoring.map_or(min, |fade| fade.full);
+            plant.v_bus = plant.v_bus.map(|bus| bus.max(ABOVE_LEAST * least));
         }
         tried
             .deviating
@@ -435,15 +452,20 @@ impl Advice {
                 )
             })
         });
-        let cycles = |tried: &Tried| tried.cycles.unwrap_or(u32::MAX);
-        let fewest = left.iter().min_by_key(|&&k| cycles(&self.tried[k]));
-        self.recommended = fewest.copied();
+        let cycles = |k: &usize| self.tried[*k].cycles.unwrap_or(u32::MAX);
+        let fewest = left.iter().map(cycles).min().unwrap_or(u32::MAX);
+        let is_alike = |k: &&usize| f64::from(cycles(k)) <= f64::from(fewest) * CYCLES_ALIKE;
+        let is_own = |k: &&usize| self.tried[**k].variant == OWN;
+        let own = left.iter().filter(is_alike).find(is_own);
+        let first = own.or_else(|| left.iter().find(is_alike));
+        self.recommended = first.copied();
         let Some(recommended) = self.recommended else {
             "no variant runs without a trip and within the control period"
                 .clone_into(&mut self.reason);
             return;
         };
-        let count = cycles(&self.tried[recommended]);
+        let count = cycles(&recommended);
+        let alike = left.iter().filter(is_alike).count();
         if has_limit {
             let _ = write!(
                 self.reason,
@@ -453,11 +475,27 @@ impl Advice {
         }
         let _ = write!(
             self.reason,
-            "; of these its longest step takes the fewest cycles, at most {count}"
+            "; its longest step takes at most {count} cycles"
         );
+        if left.len() > 1 {
+            let _ = write!(
+                self.reason,
+                ", at most {:.0} % more than the fewest ({fewest}), as those of {alike} of them, of which the motor file's own comes first, then the default",
+                100.0 * (CYCLES_ALIKE - 1.0)
+            );
+        }
         left.retain(|&k| k != recommended);
-        self.keep(left, &|_| {
-            Some("as good, but a step takes no fewer cycles".to_owned())
+        self.keep(left, &|tried| {
+            let cycles = tried.cycles.unwrap_or(u32::MAX);
+            let is_alike = f64::from(cycles) <= f64::from(fewest) * CYCLES_ALIKE;
+            Some(
+                if is_alike {
+                    "as good"
+                } else {
+                    "as good, but slower"
+                }
+                .to_owned(),
+            )
         });
     }
 
@@ -561,13 +599,14 @@ mod tests {
             recommended: None,
             reason: String::new(),
             kept: Vec::new(),
+            left_out: Vec::new(),
         };
         let mut left = advice.alike();
         assert_eq!(left, [0, 5], "{advice:#?}");
         advice.recommend(&mut left);
         assert_eq!(advice.recommended, Some(5), "{advice:#?}");
         let against = [
-            "fewer cycles",
+            "as good, but slower",
             "trips",
             "97.0 %",
             "9.0 %",

@@ -5,11 +5,11 @@
 
 use crate::closed_loop::Trip;
 use crate::engine::Prepared;
-use crate::motors::degrees_per_period;
+use crate::period::long_period;
 use crate::plant::PlantError;
 use crate::text::significant;
 use crate::times::Time;
-use hexagen_codegen::diagnostics::{at_most, engineering};
+use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::Envelope;
 use hexagen_codegen::spec::{RotorSensing, Spec};
 use hexagen_codegen::timing::StepTime;
@@ -30,8 +30,11 @@ const LEAST_LIMITED: f64 = 50.0;
 /// Greatest ripple of a drive that works, peak to peak in percent of the mean.
 const GREATEST_RIPPLE: f64 = 50.0;
 
-/// Electrical degrees in a control period above which they are the likely cause of a trip.
-const COARSE: f64 = 15.0;
+/// Part of the limit of the bus current from which on it is what cuts the torque.
+const AT_LIMIT: f64 = 0.9;
+
+/// Torque against the demand that counts as braking, percent of it.
+const BRAKES: f64 = 1.0;
 
 /// Least part of the demanded torque that counts as all of it, percent. `limit`, which looks for the speed
 /// where the torque ends, takes 97 %.
@@ -210,8 +213,9 @@ impl Judgement {
     fn judge(&self, drive: &Prepared) -> (bool, String) {
         let (nominal, lowest) = self.runs();
         if let Some(trip) = nominal.iter().find_map(|point| point.tripped) {
-            let coarse = coarse_period(&drive.spec).unwrap_or_default();
-            return (false, format!("does not work: {trip}{coarse}"));
+            let long = long_period(&drive.spec).map(|text| format!("; {text}"));
+            let long = long.unwrap_or_default();
+            return (false, format!("does not work: {trip}{long}"));
         }
         let [slow, rated] = nominal else {
             return (false, "does not work: it was not run".to_owned());
@@ -254,8 +258,14 @@ impl Judgement {
         if !rated.is_held() {
             buts.push(left);
         }
-        buts.extend(lowest.iter().filter_map(Point::lost_on_bus));
+        let returned_most = self.return_current_limit_a;
+        buts.extend(
+            lowest
+                .iter()
+                .filter_map(|point| point.lost_on_bus(returned_most)),
+        );
         buts.extend(self.rippling(&drive.spec).map(|(_, text)| text));
+        buts.extend(long_period(&drive.spec));
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));
@@ -305,11 +315,16 @@ impl Judgement {
         let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
         let is_rated = self.rated() == Some(point);
         let is_full = is_rated && self.rating_v > FULL_BUS * self.reach_v;
+        let is_cut = |(most, drawn): (f64, f64)| drawn > AT_LIMIT * most;
         let what = if point.rpm < self.envelope_rpm && !is_full {
             // The bus drives the whole current of the reference between its commutations.
             return format!("{torque} % of the demand, though the bus has room");
-        } else if self.bus_current_limit_a.is_some() {
-            "the bus and its current limit leave"
+        } else if self
+            .bus_current_limit_a
+            .zip(point.bus_current_a)
+            .is_some_and(is_cut)
+        {
+            "the limit of the bus current leaves"
         } else {
             "the bus leaves"
         };
@@ -319,7 +334,7 @@ impl Judgement {
 
 impl Point {
     /// What is told of a run at the least bus voltage, where it does not hold the torque.
-    fn lost_on_bus(&self) -> Option<String> {
+    fn lost_on_bus(&self, returned_most: Option<f64>) -> Option<String> {
         let bus = engineering(self.bus_v, "V");
         match self.torque_pct {
             _ if self.is_held() => None,
@@ -329,6 +344,20 @@ impl Point {
                     "on a bus of {bus} it makes {torque} % of the demand at rated speed"
                 ))
             }
+            // The EMF exceeds the voltage of the bus.
+            Some(torque) if torque < -BRAKES => {
+                let torque = significant(-torque, 3);
+                let returned = -self.bus_current_a.unwrap_or(0.0);
+                let beyond = returned_most.filter(|most| returned > *most).map(|most| {
+                    let most = engineering(most, "A");
+                    format!(", more than `return_current_limit` of {most}")
+                });
+                Some(format!(
+                    "on a bus of {bus} its EMF brakes it at rated speed with {torque} % of the demand, whatever is asked, and returns {}{}",
+                    engineering(returned, "A"),
+                    beyond.unwrap_or_default()
+                ))
+            }
             _ => Some(format!("a bus of {bus} does not drive it at rated speed")),
         }
     }
@@ -336,47 +365,6 @@ impl Point {
     fn is_held(&self) -> bool {
         self.torque_pct.is_some_and(|torque| torque >= HELD)
     }
-}
-
-/// A clause on a rotor that turns far in a control period; none where it does not.
-pub(crate) fn coarse_period(spec: &Spec) -> Option<String> {
-    let degrees = degrees_per_period(spec);
-    let finer = match spec.inverter.rotor_sensing {
-        RotorSensing::SampledHalls => ", or state `hall_timer_clock`, a timer of the Hall edges",
-        _ => "",
-    };
-    (degrees > COARSE).then(|| {
-        format!(
-            "; at rated speed the rotor turns {} electrical degrees in a control period: {}{finer}",
-            significant(degrees, 2),
-            shorter_period(spec, degrees),
-        )
-    })
-}
-
-/// The remedy with which the rotor turns [`COARSE`] degrees at most: fewer PWM periods in a control
-/// period, if it has several, or else a PWM frequency of two digits.
-fn shorter_period(spec: &Spec, degrees: f64) -> String {
-    let per_control = f64::from(spec.inverter.pwm_per_control);
-    let fewer = (per_control * COARSE / degrees).floor();
-    if fewer >= 1.0 {
-        let turn = significant(degrees * fewer / per_control, 2);
-        return format!("lower `pwm_per_control` to {fewer} ({turn} degrees)");
-    }
-    let least = degrees / COARSE / spec.inverter.t_s;
-    let step = 10_f64.powf(least.log10().floor() - 1.0);
-    let f_pwm = (least / step).ceil() * step;
-    let turn = significant(degrees / (spec.inverter.t_s * f_pwm), 2);
-    let of_each = if per_control > 1.0 {
-        " and `pwm_per_control` of 1"
-    } else {
-        ""
-    };
-    format!(
-        "use a period of at most {} (`f_pwm` of at least {}{of_each}: {turn} degrees)",
-        engineering(at_most(1.0 / f_pwm), "s"),
-        engineering(f_pwm, "Hz"),
-    )
 }
 
 /// What is told of a step whose longest path takes most of the control period, or more.

@@ -2,10 +2,11 @@
 
 use crate::closed_loop::{ClosedLoop, Measurement, Trip};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use crate::period::degrees_per_period;
 use crate::plant::{Mechanics, Plant};
 use crate::{LabError, Progress};
 use hexagen_codegen::spec::Envelope;
-use hexagen_codegen::spec::{RotorSensing, Spec};
+use hexagen_codegen::spec::Spec;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -208,29 +209,6 @@ impl FreeStart {
             tripped,
         })
     }
-}
-
-/// Turn of the rotor in a control period at rated speed, electrical degrees.
-pub fn degrees_per_period(spec: &Spec) -> f64 {
-    spec.motor.rated_turn(spec.inverter.t_s)
-}
-
-/// Electrical degrees in a control period at rated speed, up to which a drive is right.
-const FASTEST: f64 = 15.0;
-
-/// Greatest change of the current in a control period with the bus across two phases, over the rated
-/// current. Beyond it the pulses' ripple is so large, and decays so fast, that the mean of the
-/// current is not its sample, whatever the control does.
-const SWING: f64 = 5.0;
-
-/// Whether a default drive can be right: it has an edge timer or an angle sensor, and its period is short enough for the
-/// motor.
-pub fn can_be_right(spec: &Spec) -> bool {
-    let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let is_timed = inverter.rotor_sensing != RotorSensing::SampledHalls;
-    let rise = inverter.v_bus * inverter.t_s / (2.0 * motor.inductance);
-    let swing = rise / motor.rated_current;
-    is_timed && degrees_per_period(spec) <= FASTEST && swing <= SWING
 }
 
 /// Greatest ripple of a drive that is right, percent.

@@ -7,9 +7,8 @@ use encoder::with_encoder;
 use exact::least_ripple;
 use hexagen_codegen::spec::Envelope;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, prepare};
-use hexagen_lab::motors::{
-    FreeStart, Limit, RatedPoint, SPEEDS, can_be_right, degrees_per_period, greatest_ripple,
-};
+use hexagen_lab::motors::{FreeStart, Limit, RatedPoint, SPEEDS, greatest_ripple};
+use hexagen_lab::period::{can_be_right, degrees_per_period};
 use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
 use std::f64::consts::TAU;

@@ -289,6 +289,11 @@ impl PlantArguments {
     /// # Errors
     /// An option out of range.
     pub fn plant(&self, drive: &Prepared) -> Result<PlantParams, Failure> {
+        if let Some(load) = self.load.filter(|load| *load < 0.0) {
+            return Err(Failure::Argument(format!(
+                "--load {load}: it opposes the motion as friction does, so give it without a sign; a load that drives the shaft, as a slope does, is not simulated"
+            )));
+        }
         if self.load.is_some() && self.inertia.is_none() {
             return Err(Failure::Argument(
                 "--load: the shaft is free, and needs --inertia of rotor and load".to_owned(),

@@ -87,8 +87,21 @@ fn verdict(advice: &Advice) -> String {
             Err(_) => format!("  {name} = \"{value}\""),
         })
         .collect();
+    let left_out: Vec<String> = advice
+        .left_out
+        .iter()
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let left_out = if left_out.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "\nTried without the file's {}: add what this controller takes.",
+            left_out.join(", ")
+        )
+    };
     format!(
-        "{motor}: {variant}. Why: {reason}.\nIn the motor file:\n  [controller]\n{}",
+        "{motor}: {variant}. Why: {reason}.\nIn the motor file:\n  [controller]\n{}{left_out}",
         lines.join("\n")
     )
 }

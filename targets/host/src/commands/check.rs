@@ -29,9 +29,8 @@ pub struct Options {
 /// All diagnostics; a drive that does not work.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let asked = &options.drive;
-    let drive = asked
-        .select()?
-        .prepare_for_torque(asked.controller.as_deref())?;
+    let motor = asked.select()?;
+    let drive = motor.prepare_for_torque(asked.controller.as_deref())?;
     let judgement = Judgement::of(&drive)?;
     if options.json {
         print_json(&judgement)?;
@@ -44,6 +43,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             .filter(|core| core.contains(": "))
         {
             note(&format!("the board's chip: {core}"));
+        }
+        let assumed = motor.assumed();
+        if !assumed.is_empty() {
+            note(&format!("assumed, so measure: {}", assumed.join(", ")));
         }
         let lines = text::lines(&judgement, &drive, options.reasons, &next(asked));
         print_text(&lines.join("\n"))?;

@@ -3,14 +3,23 @@
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{BusSource, InverterSpec};
 
-/// The limit of the bus current and the fade that may cut a torque on a bus of `v_bus` volt, in words; none
-/// where neither is stated.
-pub fn cut_by(inverter: &InverterSpec, is_motoring: bool, v_bus: f64) -> Option<String> {
+/// Part of a limit of the bus current from which on it acts.
+const ACTS: f64 = 0.9;
+
+/// The limit of the bus current and the fade that cut a torque on a bus of `v_bus` volt, in words; none where neither
+/// may. `bus_current`: the mean that was drawn, if it is known, ampere.
+pub fn cut_by(
+    inverter: &InverterSpec,
+    is_motoring: bool,
+    v_bus: f64,
+    bus_current: Option<f64>,
+) -> Option<String> {
+    let current = of_current(inverter, is_motoring, bus_current);
     let BusSource::Measured {
         braking, motoring, ..
     } = inverter.bus
     else {
-        return of_current(inverter, is_motoring);
+        return current;
     };
     let (name, fade) = if is_motoring {
         let begun = motoring.filter(|fade| v_bus < fade.full);
@@ -21,16 +30,23 @@ pub fn cut_by(inverter: &InverterSpec, is_motoring: bool, v_bus: f64) -> Option<
     };
     let bus = engineering(v_bus, "V");
     let of_voltage = fade.map(|_| format!("`{name}` on a bus of {bus}"));
-    let both = of_current(inverter, is_motoring).into_iter();
-    let both: Vec<String> = both.chain(of_voltage).collect();
+    let both: Vec<String> = current.into_iter().chain(of_voltage).collect();
     (!both.is_empty()).then(|| both.join(", "))
 }
 
-fn of_current(inverter: &InverterSpec, is_motoring: bool) -> Option<String> {
+fn of_current(
+    inverter: &InverterSpec,
+    is_motoring: bool,
+    bus_current: Option<f64>,
+) -> Option<String> {
     let (name, most) = if is_motoring {
         ("bus_current_limit", inverter.bus_currents.drawn)
     } else {
         ("return_current_limit", inverter.bus_currents.returned)
     };
-    Some(format!("`{name}` of {}", engineering(most?, "A")))
+    let acts = |most: &f64| bus_current.is_none_or(|current| current.abs() >= ACTS * most);
+    Some(format!(
+        "`{name}` of {}",
+        engineering(most.filter(acts)?, "A")
+    ))
 }

@@ -145,7 +145,7 @@ fn print_found(outcome: &Outcome, drive: &Prepared, v_bus: f64) -> Result<(), Fa
 /// A limit in words, on a bus of `v_bus` volt.
 fn found(limit: &SpeedLimit, torque: f64, drive: &Prepared, v_bus: f64) -> String {
     let is_below = limit.lost == Some(Side::Below);
-    let cut = is_below.then(|| cut_by(&drive.spec.inverter, torque > 0.0, v_bus));
+    let cut = is_below.then(|| cut_by(&drive.spec.inverter, torque > 0.0, v_bus, None));
     let cut = cut.flatten().map(|cut| format!(", with {cut}"));
     let why = limit.why().unwrap_or_default() + &cut.unwrap_or_default();
     match (limit.outcome, limit.limit_rpm, limit.limit_pct) {

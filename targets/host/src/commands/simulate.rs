@@ -172,6 +172,12 @@ fn check_duration(run: &RunOptions, plant: &PlantParams, options: &Options) -> R
             aim.within
         )));
     }
+    if measured <= MOST_RECORDED {
+        return Err(Failure::Argument(format!(
+            "`slew_rate`: the set-point takes effect in {:.0} s, too long for a run; state a higher rate or a smaller --torque",
+            run.ramp
+        )));
+    }
     let least = rpm.abs() * measured as f64 / MOST_RECORDED as f64;
     Err(Failure::Argument(format!(
         "{name} {rpm}: an electrical turn takes {:.0} s, longer than the {:.1} s of a record; give 0 or at least {} rpm",
@@ -239,6 +245,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 /// A demand over the envelope's torque from which on it is beyond the envelope.
 const BEYOND: f64 = 1.001;
 
+/// Torque against the demand that counts as braking, over the rated one.
+const BRAKES: f64 = 0.01;
+
 /// Share of a demand below which a torque that a limit may have cut is told.
 const CUT: f64 = 0.97;
 
@@ -274,8 +283,30 @@ fn beyond_drive(
     let within = envelope.torque(omega_m.abs());
     let is_motoring = demand * omega_m > 0.0;
     let made = outcome.figures.mean_torque_nm;
+    // Between two terminals at most, of any shape.
+    let emf = 2.0 * plant.k_phase.into_iter().fold(0.0, f64::max) * omega_m.abs();
+    let brakes = |made: &f64| made * omega_m.signum() < -BRAKES * drive.rated_torque();
+    if let Some(braking) = made.filter(brakes)
+        && demand * omega_m >= 0.0
+        && emf > plant.v_bus
+    {
+        return Some(format!(
+            "{} Nm at {rpm} rpm: the EMF exceeds the bus of {} and brakes with {} Nm, whatever is asked, and no limit holds what it returns; `coast` or stay slower",
+            significant(demand, 4),
+            engineering(plant.v_bus, "V"),
+            significant(braking.abs(), 4)
+        ));
+    }
+    if demand == 0.0 {
+        return None;
+    }
     if let Some(made) = made.filter(|made| made / demand < CUT)
-        && let Some(cut) = cut_by(&drive.spec.inverter, is_motoring, plant.v_bus)
+        && let Some(cut) = cut_by(
+            &drive.spec.inverter,
+            is_motoring,
+            plant.v_bus,
+            outcome.figures.bus_current_a,
+        )
     {
         return Some(format!(
             "{} Nm at {rpm} rpm: the drive makes {} Nm, with {cut}",

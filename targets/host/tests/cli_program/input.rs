@@ -157,6 +157,10 @@ fn options_out_of_range_or_at_odds_are_told() {
             "--inertia",
         ),
         (
+            &["simulate", PAPER, "--rpm", "1", "--load=-1"],
+            "give it without a sign",
+        ),
+        (
             &["simulate", PAPER, "--rpm", "1", "--adc-bits", "30"],
             "adc_bits",
         ),

@@ -659,6 +659,10 @@ fn limit_tells_what_the_window_of_low_side_sensors_costs() {
         text.contains("; with in-phase sensors held up to"),
         "{text}"
     );
+    // A board that says how many ADCs its three sensors share.
+    let shared = ["limit", "linix-45zwn24-40", "--board", "st-b-g431b-esc1"];
+    let text = run(shared.iter().chain(&options)).stdout;
+    assert!(text.contains("in-phase sensors"), "{text}");
     let result = run(["limit", PAPER, "--start-angle", "0.1", "--json"]).json();
     assert!(result["without_window"].is_null(), "{result}");
 }

@@ -40,6 +40,8 @@ pub struct RunOptions {
     /// Seconds that a drive with a rotor at standstill waits for its angle before it settles. (Where the
     /// rotor turns, half a turn of settling gives the angle.)
     pub wait: f64,
+    /// Seconds in which the set-point takes effect, with a slew rate.
+    pub ramp: f64,
     /// Largest difference of two legs' compare values, where it is less than the timer's period.
     pub reach: Option<u16>,
     /// Target of a speed loop; `None` if the speed is held or free.
@@ -65,6 +67,7 @@ impl RunOptions {
             commutation_threshold: 0.5,
             starts: STARTS.to_vec(),
             wait: 0.0,
+            ramp: 0.0,
             reach: None,
             aim: None,
         }
@@ -83,7 +86,7 @@ impl RunOptions {
         };
         let settling = self.aim.map_or(settling, |aim| settling.max(aim.within));
         (
-            (settling / params.t_s).ceil() as usize,
+            ((self.ramp + settling) / params.t_s).ceil() as usize,
             ((measured / params.t_s).round() as usize).max(1),
         )
     }

@@ -75,6 +75,8 @@ pub fn reach_of(spec: &Spec) -> f64 {
 pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
     let controller = spec.controller.common();
     let reach = reach_of(spec);
+    let torque = torque.clamp(-reach, reach);
+    let amperes = torque.abs() / spec.torque_constant();
     let per_ampere = spec.motor.emf_constant * spec.motor.emf_shape.quasi_square_factor();
     RunOptions {
         delay: if controller.delay == 0 {
@@ -84,7 +86,8 @@ pub fn run_of(spec: &Spec, omega_m: f64, torque: f64) -> RunOptions {
         },
         commutation_threshold: controller.commutation_threshold,
         wait: f64::from(spec.start_periods()) * spec.inverter.t_s,
+        ramp: controller.slew_rate.map_or(0.0, |rate| amperes / rate),
         reach: Some(spec.reach() as u16),
-        ..RunOptions::new(omega_m, torque.clamp(-reach, reach) / per_ampere)
+        ..RunOptions::new(omega_m, torque / per_ampere)
     }
 }

@@ -124,8 +124,9 @@ impl SelectedMotor {
     /// # Errors
     /// None for a specification that can be read.
     pub fn without_window(&self) -> Result<Self, LabError> {
-        const OF_WINDOW: [&str; 6] = [
+        const OF_WINDOW: [&str; 7] = [
             "current_sensing",
+            "current_adcs",
             "settling_time",
             "aperture_time",
             "conversion_time",
@@ -154,6 +155,25 @@ impl SelectedMotor {
     /// All diagnostics.
     pub fn prepare(&self, variant: Option<&str>) -> Result<Prepared, LabError> {
         Ok(prepare_ast(self.ast.clone(), &self.source.name, variant)?)
+    }
+
+    /// Values that no data sheet gives, of motor file and board, as `field value`.
+    pub fn assumed(&self) -> Vec<String> {
+        let SpecAst {
+            motor, inverter, ..
+        } = &self.ast;
+        let own = motor.fields.iter().chain(&inverter.fields);
+        let board = self
+            .ast
+            .board
+            .as_ref()
+            .and_then(|board| board.file.as_ref());
+        let of_board = board.into_iter().flat_map(|file| &file.inverter.fields);
+        let of_board = of_board.filter(|field| inverter.field(&field.name).is_none());
+        let assumed = own.chain(of_board).filter(|field| field.assumed.is_some());
+        assumed
+            .map(|field| format!("`{}` {}", field.name, field.value))
+            .collect()
     }
 
     /// Whether the motor has an angle sensor in place of Hall sensors.
