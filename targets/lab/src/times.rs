@@ -56,7 +56,7 @@ pub fn sentence(times: &[StepTime]) -> String {
     };
     let in_control = time.told().control_cycles;
     format!(
-        "{} {in_control} cycles, {} % of a period, worst {} %; in C {} and {} %; {}{}, {}",
+        "{} {in_control} cycles, {} % of a period, worst {} %; in C {}, {} %; {}{}, {}",
         if time.is_bound() { "up to" } else { "about" },
         time.percent_of_period(in_control),
         time.percent_of_period(time.most_cycles() as u32),

@@ -131,7 +131,7 @@ fn the_best_controller_of_a_motor_is_recommended_with_the_reason() {
         "recommended",
         "with deviations",
         "Why: 16 of 17",
-        "of the fewest",
+        "more than the fewest",
     ] {
         assert!(said.stdout.contains(text), "{text}: {said:?}");
     }
