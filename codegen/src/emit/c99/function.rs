@@ -322,11 +322,10 @@ fn read_words(program: &Program, function: &Function, names: &Names) -> String {
         Some(format!("{INDENT}const int32_t {name} = drive->{field};\n"))
     });
     let mut text: String = single.collect();
-    if let Some(name) = name_where_read(Demand::BusIsFresh) {
-        text.push_str(&format!(
-            "{INDENT}const int32_t {name} = !hexagen_bus_is_stale(&drive->bus);\n"
-        ));
-    }
+    let fresh = name_where_read(Demand::BusIsFresh).map(|name| {
+        format!("{INDENT}const int32_t {name} = !hexagen_bus_is_stale(&drive->bus);\n")
+    });
+    text.extend(fresh);
     let bus = Demand::OF_BUS.map(name_where_read);
     if bus.iter().any(Option::is_some) {
         text.push_str(INDENT);
