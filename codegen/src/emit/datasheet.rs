@@ -5,8 +5,8 @@ use super::times;
 use crate::diagnostics::{engineering, rpm, significant};
 use crate::interface::{Interface, PublicValue, Rounding};
 use crate::ir::{
-    Cost, Demand, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph,
-    cases, live_words,
+    Cost, ErrorInterval, Function, Kind, PathCost, Program, Stage, Table, VerifiedGraph, cases,
+    live_words,
 };
 
 /// The data sheet as Markdown text.
@@ -258,10 +258,7 @@ fn memory(sheet: &mut Sheet, program: &Program) {
         live_words(&program.step)
     ));
     sheet.table(["word", "stored as", "initially", "range", "meaning"]);
-    // What the runtime computes is no memory.
-    let computed = program.param(Demand::BusIsFresh).map(|word| &word.name);
-    let kept = program.words().filter(|word| Some(&word.name) != computed);
-    for word in kept {
+    for word in program.words() {
         sheet.row([
             format!("`{}`", word.name),
             storage(word.storage_bits).to_owned(),

@@ -367,8 +367,10 @@ impl Program {
 
     /// All persistent words: state, then set-point.
     pub fn words(&self) -> impl Iterator<Item = &Word> {
-        let params = self.params.iter().map(|(_, word)| word);
-        self.states.iter().chain(params)
+        // Whether the bus is fresh the runtime computes; nothing keeps it.
+        let kept = self.params.iter();
+        let kept = kept.filter(|(demand, _)| *demand != Demand::BusIsFresh);
+        self.states.iter().chain(kept.map(|(_, word)| word))
     }
 
     /// The step and the setters.

@@ -44,7 +44,7 @@ pub struct Chip {
     pub assumed: &'static str,
     /// The compiler whose code was counted.
     pub compiler: &'static str,
-    /// Greatest figures of a counted drive in C over those of the same drive in Rust.
+    /// How many times as long a counted drive takes in C as in Rust, at most.
     pub in_c: Times<f64>,
     estimates: Times<Estimate>,
     /// Figures of drives by [`digest`].
@@ -237,7 +237,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
         .collect()
 }
 
-/// Greatest figures of drives in C over those in Rust on a core, and the compiler.
+/// How many times as long drives take in C as in Rust on a core, at most, and the compiler.
 pub fn in_c(target: &str) -> Option<(&'static str, Times<f64>)> {
     let chip = CHIPS.iter().find(|chip| chip.target == target)?;
     Some((chip.compiler, chip.in_c))

@@ -30,8 +30,10 @@ const LEAST_LIMITED: f64 = 50.0;
 /// Greatest ripple of a drive that works, peak to peak in percent of the mean.
 const GREATEST_RIPPLE: f64 = 50.0;
 
-/// Part of the limit of the bus current from which on it is what cuts the torque.
-const AT_LIMIT: f64 = 0.9;
+/// Whether a limit of the bus current cuts the torque: the mean current is near it, ampere.
+pub fn limit_acts(most: f64, current: f64) -> bool {
+    current >= 0.9 * most
+}
 
 /// Torque against the demand that counts as braking, percent of it.
 const BRAKES: f64 = 1.0;
@@ -315,14 +317,13 @@ impl Judgement {
         let torque = significant(point.torque_pct.unwrap_or(0.0), 3);
         let is_rated = self.rated() == Some(point);
         let is_full = is_rated && self.rating_v > FULL_BUS * self.reach_v;
-        let is_cut = |(most, drawn): (f64, f64)| drawn > AT_LIMIT * most;
         let what = if point.rpm < self.envelope_rpm && !is_full {
             // The bus drives the whole current of the reference between its commutations.
             return format!("{torque} % of the demand, though the bus has room");
         } else if self
             .bus_current_limit_a
             .zip(point.bus_current_a)
-            .is_some_and(is_cut)
+            .is_some_and(|(most, drawn)| limit_acts(most, drawn))
         {
             "the limit of the bus current leaves"
         } else {

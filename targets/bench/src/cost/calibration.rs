@@ -38,7 +38,7 @@ pub struct Counted {
     pub target: Target,
     pub compiler: String,
     pub drives: Vec<Drive>,
-    /// Greatest figures of a drive in C over those of the same drive in Rust.
+    /// How many times as long a drive takes in C as in Rust, at most.
     pub in_c: Times<f64>,
 }
 
@@ -74,7 +74,7 @@ pub fn release(compiler: &str) -> String {
     words.join(" ")
 }
 
-/// Greatest figures of a drive in C over those of the same drive in Rust: of `step_x_c` over `step_x`.
+/// How many times as long a drive takes in C (`step_x_c`) as in Rust (`step_x`), at most.
 pub fn in_c(figures: &BTreeMap<String, Figures>) -> Times<f64> {
     let pairs = figures.iter().filter_map(|(symbol, in_c)| {
         let in_rust = figures.get(symbol.strip_suffix("_c")?)?;

@@ -2,9 +2,7 @@
 
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{BusSource, InverterSpec};
-
-/// Part of a limit of the bus current from which on it acts.
-const ACTS: f64 = 0.9;
+use hexagen_lab::judgement::limit_acts;
 
 /// The limit of the bus current and the fade that cut a torque on a bus of `v_bus` volt, in words; none where neither
 /// may. `bus_current`: the mean that was drawn, if it is known, ampere.
@@ -44,7 +42,7 @@ fn of_current(
     } else {
         ("return_current_limit", inverter.bus_currents.returned)
     };
-    let acts = |most: &f64| bus_current.is_none_or(|current| current.abs() >= ACTS * most);
+    let acts = |most: &f64| bus_current.is_none_or(|current| limit_acts(*most, current.abs()));
     Some(format!(
         "`{name}` of {}",
         engineering(most.filter(acts)?, "A")
