@@ -136,7 +136,8 @@ pub fn compare(
             let Some(controller) = with_word(variant, word) else {
                 continue;
             };
-            let (controller, refused, accuracy) = match motor.prepare(Some(&controller)) {
+            let (controller, refused, accuracy) = match motor.prepare_for_torque(Some(&controller))
+            {
                 Ok(drive) => {
                     let accuracy = accuracy(&drive, plant)?;
                     (drive.variant, None, Some(accuracy))

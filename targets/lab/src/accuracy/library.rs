@@ -48,7 +48,7 @@ pub fn compare_library(plant: &PlantOptions) -> Result<Library, LabError> {
     let drives: Vec<(String, Result<Prepared, LabError>)> = motors
         .into_iter()
         .map(|motor| {
-            let drive = motor.prepare(variant.as_deref());
+            let drive = motor.prepare_for_torque(variant.as_deref());
             (motor.source.name, drive)
         })
         .collect();

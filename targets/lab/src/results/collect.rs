@@ -248,7 +248,9 @@ fn plan(
         };
         let made: Vec<_> = made
             .into_iter()
-            .map(|(capture, word, variant)| (capture, word, motor.prepare(Some(&variant))))
+            .map(|(capture, word, variant)| {
+                (capture, word, motor.prepare_for_torque(Some(&variant)))
+            })
             .collect();
         let generates = made.iter().any(|(_, _, drive)| drive.is_ok());
         let mut drives = Vec::new();
@@ -301,7 +303,12 @@ const NO_TIMER: &str = "Every row sees Hall edges at samples alone, half a perio
 fn errors(motor: &SelectedMotor, notes: &mut Vec<String>) -> Result<Vec<ErrorsSeen>, LabError> {
     let mut drives = vec![];
     for kind in KINDS.map(|kind| kind.name) {
-        let made = WORDS.map(|word| (word, motor.prepare(with_word(kind, word).as_deref())));
+        let made = WORDS.map(|word| {
+            (
+                word,
+                motor.prepare_for_torque(with_word(kind, word).as_deref()),
+            )
+        });
         // A refused controller has a note of the table's rows already.
         if made.iter().all(|(_, drive)| drive.is_err()) {
             continue;
@@ -384,6 +391,7 @@ mod tests {
     use super::plan;
     use crate::engine::{PlantOptions, SelectedMotor};
     use crate::results::{Capture, PAPER_MOTOR, design_table};
+    use hexagen_codegen::spec::apply_variant;
 
     fn paper_motor() -> SelectedMotor {
         SelectedMotor::find(PAPER_MOTOR, &PlantOptions::default()).expect("is in the library")
@@ -404,6 +412,24 @@ mod tests {
         let run = planned[0].run(false).expect("runs").runs;
         assert_eq!(run.len(), 2);
         assert_eq!(notes, [super::NO_TIMER]);
+    }
+
+    #[test]
+    fn variants_of_a_drive_with_a_speed_loop_are_measured_at_the_demanded_torque() {
+        let mut motor = paper_motor();
+        motor.ast.controller.fields.clear();
+        let lines = "speed_loop=on,speed_bandwidth=5Hz,acceleration_limit=500rpm/s";
+        apply_variant(&mut motor.ast, &format!("pdcc:{lines}")).expect("is a variant");
+        let rows = plan(&motor, design_table(), [false; 2], &mut Vec::new()).expect("rows");
+        for row in &rows {
+            for (_, drive) in &row.drives {
+                let (slow, demand) = (0.2 * drive.spec.motor.rated_speed, drive.demand());
+                let measured = drive.measure_at(slow, demand).expect("runs");
+                let torque = measured.figures.mean_torque_nm.expect("no trip");
+                let name = &drive.variant;
+                assert!((0.9..1.1).contains(&(torque / demand)), "{name}: {torque}");
+            }
+        }
     }
 
     #[test]

@@ -62,7 +62,7 @@ pub fn robustness(
 fn first_that_generates(motor: &SelectedMotor, variants: &[String]) -> Result<Prepared, LabError> {
     let mut reason = None;
     for variant in variants {
-        match motor.prepare(Some(variant)) {
+        match motor.prepare_for_torque(Some(variant)) {
             Ok(drive) => return Ok(drive),
             Err(failure) => reason = reason.or(Some(failure)),
         }
@@ -93,7 +93,7 @@ struct Drives<'v> {
 impl<'v> Drives<'v> {
     fn prepare(motors: &[(Option<u32>, SelectedMotor)], variant: &'v str) -> Self {
         let by_bits = motors.iter().map(|(bits, motor)| {
-            let drive = motor.prepare(Some(variant));
+            let drive = motor.prepare_for_torque(Some(variant));
             (*bits, drive.map_err(|failure| failure.to_string()))
         });
         Self {
