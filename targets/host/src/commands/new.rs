@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use template::{Line, SECTIONS};
+use template::{ANGLE_POLE_PAIRS, Line, SECTIONS};
 
 /// Options of `new`.
 #[derive(Args, Clone, Debug)]
@@ -200,6 +200,26 @@ impl Draft {
             .filter(|(name, _)| line.fields.contains(&name.as_str()))
     }
 
+    /// A value for a line.
+    fn example(&self, line: &Line) -> String {
+        let motors = self
+            .pole_pairs()
+            .filter(|_| line.fields == [ANGLE_POLE_PAIRS]);
+        motors.map_or_else(|| line.example.to_owned(), |pairs| pairs.to_string())
+    }
+
+    /// Pole pairs of the motor, if they are given.
+    fn pole_pairs(&self) -> Option<u32> {
+        self.values.iter().find_map(|(name, value)| {
+            let number: u32 = value.parse().ok()?;
+            match name.as_str() {
+                "pole_pairs" => Some(number),
+                "poles" => Some(number / 2),
+                _ => None,
+            }
+        })
+    }
+
     /// Fields without value and default that a drive needs, or that those which are given call for: the `winding` of
     /// a value per phase.
     fn missing(&self, file: &Path) -> Vec<&'static str> {
@@ -245,7 +265,7 @@ impl Draft {
                 ""
             };
             note(&format!("{about}\n  {}{optional} ", names(line)));
-            let Some(answer) = answer(answers, line.example)? else {
+            let Some(answer) = answer(answers, &self.example(line))? else {
                 return Ok(());
             };
             let (name, value) = match answer.split_once('=') {
@@ -323,7 +343,7 @@ impl Draft {
                 if entries.is_empty() {
                     entries.push(match line.default {
                         Some(default) => entry(line.fields[0], default),
-                        None => format!("# {}", entry(line.fields[0], line.example)),
+                        None => format!("# {}", entry(line.fields[0], &self.example(line))),
                     });
                 }
                 text.push_str(&entries.join("\n"));
@@ -587,6 +607,17 @@ mod tests {
             "{}",
             draft.text()
         );
+    }
+
+    #[test]
+    fn an_angle_sensor_is_proposed_on_the_shaft() {
+        for (poles, pairs) in [(("poles", "42"), 21), (("pole_pairs", "7"), 7)] {
+            let given = [poles, ("rotor", "angle")];
+            let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+            let draft = Draft::of(given.to_vec(), Path::new("joint.toml")).expect("is right");
+            let proposed = format!("\n# angle_pole_pairs = {pairs}\n");
+            assert!(draft.text().contains(&proposed), "{}", draft.text());
+        }
     }
 
     #[test]

@@ -74,9 +74,11 @@ fn of_motor(motor: &MotorSpec) -> String {
 
 fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     let edges = match drive.spec.inverter.rotor_sensing {
-        RotorSensing::SampledHalls => "Hall edges sampled once a period",
-        RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer",
-        RotorSensing::Angle(_) => "an angle sensor",
+        RotorSensing::SampledHalls => "Hall edges sampled once a period".to_owned(),
+        RotorSensing::TimedHalls { .. } => "Hall edges by a capture timer".to_owned(),
+        RotorSensing::Angle(sensor) => {
+            of_angle(sensor.turns.unsigned_abs(), drive.spec.motor.pole_pairs)
+        }
     };
     let (nominal, _) = judgement.runs();
     let rates = nominal
@@ -92,6 +94,15 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         "{}, {edges}; switches at {rates}",
         drive.spec.controller.kind()
     )
+}
+
+/// The angle that a sensor of so many pole pairs tells of a motor of `all`.
+fn of_angle(pairs: u32, all: u32) -> String {
+    match pairs {
+        _ if pairs == all => "angle of the shaft".to_owned(),
+        1 => "electrical angle".to_owned(),
+        _ => format!("angle of {pairs} electrical turns a turn"),
+    }
 }
 
 fn of_sensing(judgement: &Judgement, inverter: &InverterSpec) -> String {
@@ -196,5 +207,17 @@ fn of_run(at: &str, point: &Point) -> String {
             format!("{at} {} %{ripple}", significant(torque, 3))
         }
         (None, None) => format!("{at} none"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_angle;
+
+    #[test]
+    fn an_angle_is_told_as_the_shafts_or_as_electrical() {
+        let told = [(21, 21), (1, 21), (3, 21)].map(|(pairs, all)| of_angle(pairs, all));
+        let turns = "angle of 3 electrical turns a turn";
+        assert_eq!(told, ["angle of the shaft", "electrical angle", turns]);
     }
 }

@@ -64,6 +64,9 @@ impl Line {
     }
 }
 
+/// Of a sensor on the shaft it is the motor's number.
+pub const ANGLE_POLE_PAIRS: &str = "angle_pole_pairs";
+
 const MOTOR: &[Line] = &[
     needed(&["description"], "Free text for the documentation.", "Rear hub drive").optional(),
     needed(
@@ -142,9 +145,10 @@ const MOTOR: &[Line] = &[
     )
     .optional(),
     needed(
-        &["angle_pole_pairs"],
-        "Electrical turns in a turn of the angle: the pole pairs for a sensor on the shaft, 1 for an electrical angle.",
-        "1",
+        &[ANGLE_POLE_PAIRS],
+        "Pole pairs of the angle, that is electrical turns in a turn of it: all of the motor for a sensor on the shaft,\n\
+         # 1 for an angle that is electrical, as of a resolver with the motor's pole pairs.",
+        "4",
     )
     .optional(),
 ];
