@@ -78,12 +78,17 @@ pub enum BusRemedy {
 impl fmt::Display for BusRemedy {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Speed(reachable) => {
-                write!(out, "lower `rated_speed` to {}", rpm_at_most(reachable))
-            }
-            Self::BelowSpeed(reachable) => write!(
+            Self::Speed(reachable) => write!(
                 out,
-                "lower `rated_speed` below {} (reading the sensors in the low legs takes a part of the bus, too)",
+                "lower `rated_speed` to {}{AT_NOMINAL}",
+                rpm_at_most(reachable)
+            ),
+            Self::BelowSpeed(reachable) => write!(
+/// Why a data sheet's speed may be beyond the bus.
+const AT_NOMINAL: &str = " if the data sheet states it at a higher supply (its `nominal_voltage`)";
+
+                out,
+                "lower `rated_speed` below {} (reading the sensors in the low legs takes a part of the bus, too){AT_NOMINAL}",
                 rpm_at_most(reachable)
             ),
             Self::Current(reachable) => {
@@ -366,7 +371,17 @@ fn agreement(of: &Contradiction) -> String {
     }
     let agree = format!("{} agree", list(&fields, "and"));
     if of.fitting.is_empty() && of.voltage.is_none() {
-        format!("{agree}, so that `{}` is likely wrong; ", of.culprit.field)
+        // A rated torque and its current are one claim.
+        let suspects: Vec<&str> = match of.claim.first() {
+            Some(first) if first.field == of.culprit.field => {
+                of.claim.iter().map(|part| part.field).collect()
+            }
+            _ => vec![of.culprit.field],
+        };
+        format!(
+            "{agree}, so that {} is likely wrong; ",
+            list(&suspects, "or")
+        )
     } else {
         format!("{agree}; ")
     }

@@ -114,9 +114,17 @@ pub(super) fn check(
     let is_electrical = fitting
         .iter()
         .any(|(other, _)| other.at.field == "no_load_speed");
+    // The claim's current may be misread as well as its torque.
+    let of_claim = |at: &&Part| first.parts.iter().any(|part| part.field == at.field);
+    let misread = fitting.first().map(|(other, _)| other.at);
+    let culprit = misread.filter(of_claim).unwrap_or(culprit);
     let fitting: Vec<(String, String)> = fitting
         .iter()
-        .map(|(other, constant)| (other.change.clone(), (first.told)(*constant)))
+        .map(|(other, constants)| {
+            let told = constants.iter().map(|constant| (first.told)(*constant));
+            let told: Vec<String> = told.collect();
+            (other.change.clone(), told.join(" or "))
+        })
         .collect();
     let expected: Vec<f64> = first.factors.iter().map(|factor| factor * phase).collect();
     errors.push(catalogue::contradiction(&Contradiction {
@@ -185,6 +193,22 @@ fn majority(phase: f64, claims: &[Claim]) -> Option<f64> {
     (2 * votes > all && votes < all).then_some(constant)
 }
 
+/// Torque per ampere of a rated current's peak over the phase constant, by the current's shape.
+fn factors_of_rating(shape: EmfShape, is_rms: bool) -> Vec<f64> {
+    // Of one root mean square a block has another plateau than a sine has a peak.
+    let plateau = if is_rms {
+        1.5_f64.sqrt() / shape.rated_peak()
+    } else {
+        1.0
+    };
+    let block = shape.quasi_square_factor() * plateau;
+    // A sinusoidal current of the same peak, too.
+    let has_sine = !matches!(shape, EmfShape::Trapezoidal { .. });
+    std::iter::once(block)
+        .chain(has_sine.then(|| shape.sine_factor()))
+        .collect()
+}
+
 /// Everything that is stated beside the constant that is taken.
 fn claims<'a>(
     motor: &'a Motor,
@@ -196,15 +220,7 @@ fn claims<'a>(
     let (block, sine) = (shape.quasi_square_factor(), shape.sine_factor());
     let mut claims = Vec::new();
     if let (Some(torque), Some(current)) = (&motor.rated_torque, &motor.rated_current) {
-        // Of one root mean square a block has another plateau than a sine has a peak.
-        let plateau = if current.basis.contains(&Basis::Rms) {
-            1.5_f64.sqrt() / shape.rated_peak()
-        } else {
-            1.0
-        };
-        let mut factors = vec![block * plateau];
-        // A sinusoidal current of the same peak, too.
-        factors.extend((!matches!(shape, EmfShape::Trapezoidal { .. })).then_some(sine));
+        let factors = factors_of_rating(shape, current.basis.contains(&Basis::Rms));
         let amperes = current.si;
         claims.push(Claim {
             code: Code::TorqueContradiction,
@@ -323,27 +339,30 @@ fn others<'a>(
         .collect()
 }
 
-/// Those readings that fit, with the constant that they give, single changes first; two changes only
-/// where no single one fits.
+/// Those readings that fit, with the constants that they give by the current's shape, single changes first; two
+/// changes only where no single one fits.
 fn fitting<'a>(
     others: Vec<Other<'a>>,
     claim: &Claim<'a>,
     motor: &'a Motor,
     phase: f64,
-) -> Vec<(Other<'a>, f64)> {
+) -> Vec<(Other<'a>, Vec<f64>)> {
     let factor = claim.factors[0];
-    let mut candidates: Vec<(Other, f64)> = Vec::new();
+    let mut candidates: Vec<(Other, Vec<f64>)> = Vec::new();
     // The claim's own field may be the one that is misread.
     let shape = motor.emf_shape.unwrap_or(EmfShape::Sinusoidal);
     if let (Code::TorqueContradiction, Some(current)) = (claim.code, motor.rated_current.as_ref()) {
-        let (word, constant) = if current.basis.contains(&Basis::Rms) {
-            ("peak", factor / shape.rated_peak())
+        let is_rms = current.basis.contains(&Basis::Rms);
+        let (word, peak) = if is_rms {
+            ("peak", 1.0 / shape.rated_peak())
         } else {
-            ("rms", factor * shape.rated_peak())
+            ("rms", shape.rated_peak())
         };
         let change = format!("`rated_current` as `{word}`");
         let at = &current.part;
-        candidates.push((Other { change, at, phase }, constant * phase));
+        let factors = factors_of_rating(shape, !is_rms);
+        let constants = factors.iter().map(|factor| factor * peak * phase);
+        candidates.push((Other { change, at, phase }, constants.collect()));
     }
     if let (Some(speed), Some(pairs @ 2..)) = (motor.no_load_speed.as_ref(), motor.pole_pairs)
         && speed.part.field == claim.parts[0].field
@@ -351,7 +370,7 @@ fn fitting<'a>(
         let change = "`no_load_speed` as an electrical speed, eRPM".to_owned();
         let at = &speed.part;
         let constant = factor * phase / f64::from(pairs);
-        candidates.push((Other { change, at, phase }, constant));
+        candidates.push((Other { change, at, phase }, vec![constant]));
     }
     let claimed = |stated: &&Emf| stated.given.part.field == claim.parts[0].field;
     if let Some(stated) = motor.emf.iter().skip(1).find(claimed) {
@@ -362,16 +381,18 @@ fn fitting<'a>(
                 words(&stated.given, reading)
             );
             let at = &stated.given.part;
-            candidates.push((Other { change, at, phase }, reading.factor(shape) * phase));
+            let constant = reading.factor(shape) * phase;
+            candidates.push((Other { change, at, phase }, vec![constant]));
         }
     }
     candidates.extend(others.into_iter().map(|other| {
         let constant = factor * other.phase;
-        (other, constant)
+        (other, vec![constant])
     }));
+    let fits = |constant: &f64| fits(*constant, claim.constant);
     let fitting = candidates
         .into_iter()
-        .filter(|(_, constant)| fits(*constant, claim.constant));
+        .filter(|(_, constants)| constants.iter().any(fits));
     let (single, double): (Vec<_>, Vec<_>) =
         fitting.partition(|(other, _)| !other.change.contains(" and "));
     if single.is_empty() { double } else { single }
