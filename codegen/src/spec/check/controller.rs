@@ -20,12 +20,13 @@ const PLANNED_OPTIONS: [&str; 1] = ["zero"];
 /// The default controller.
 const DEFAULT_KIND: &str = "pdcc";
 
-/// The controller with its options, and what tells the rotor's position.
+/// The controller with its options, and what tells the rotor's position. `in_error`: fields of motor and inverter whose
+/// error has been told.
 pub(super) fn read(
     section: &Section,
     fallback: &Location,
-    motor: &Motor,
-    inverter: &Inverter,
+    (motor, inverter): (&Motor, &Inverter),
+    in_error: Vec<&'static str>,
     errors: &mut Collector,
 ) -> (Option<ControllerSpec>, Option<RotorSensing>) {
     let any = Reader::new("controller", section, controller::rules(), fallback);
@@ -62,6 +63,7 @@ pub(super) fn read(
             .as_ref()
             .map(|given| (given.si, given.part.clone())),
         dead_time: inverter.dead_time.as_ref().map_or(0.0, |given| given.si),
+        in_error,
         must_be_low: inverter.sensing.must_be_low(),
         reads_off_legs: inverter.sensing.reads_off_legs(),
         inertia: motor.inertia,

@@ -73,11 +73,8 @@ pub(super) fn inverter(
         (inverter.t_s?, adc?, currents?, speeds?);
     rated?;
     let (first, others) = adc.sensors.split_first()?;
-    let pwm_period = t_s / f64::from(inverter.pwm_per_control);
     let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
-    if let Some(given) = &inverter.dead_time
-        && dead_time > 0.1 * pwm_period * (1.0 + 1e-9)
-    {
+    if let Some((given, pwm_period)) = inverter.long_dead_time() {
         errors.push(catalogue::dead_time(&given.part, pwm_period));
     }
     Some(InverterSpec {

@@ -517,7 +517,17 @@ fn read_calibration(reader: &Reader, errors: &mut Collector) -> u32 {
     samples.ilog2()
 }
 
-impl Inverter<'_> {
+/// Greatest share of the PWM period that the dead time may take.
+const MOST_DEAD_TIME: f64 = 0.1;
+
+impl<'a> Inverter<'a> {
+    /// A dead time that takes too much of the PWM period, and that period.
+    pub fn long_dead_time(&self) -> Option<(&Given<'a>, f64)> {
+        let pwm_period = self.t_s? / f64::from(self.pwm_per_control);
+        let given = self.dead_time.as_ref()?;
+        (given.si > MOST_DEAD_TIME * pwm_period * (1.0 + 1e-9)).then_some((given, pwm_period))
+    }
+
     /// The longest period of whole timer counts within `limit`; `limit` where the timer is unknown.
     pub fn period_within(&self, limit: f64) -> f64 {
         match (self.t_s, self.timer_period) {

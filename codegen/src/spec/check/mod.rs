@@ -19,6 +19,8 @@ mod sensing_window;
 
 pub use origins::{Origin, Origins};
 
+use self::inverter::Inverter;
+use self::motor::Motor;
 use super::reader::Reader;
 use super::{Spec, SpecAst, schema};
 use crate::diagnostics::{Code, Collector, Diagnostics, catalogue};
@@ -48,8 +50,13 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let of_halls = ["hall_glitches", "minimum_speed"];
     angle::refuse_halls(&inverter_reader, &motor, &of_halls, &mut errors);
     let whole_controller = ast.whole_controller();
-    let (controller, capture) =
-        controller::read(&whole_controller, fallback, &motor, &inverter, &mut errors);
+    let (controller, capture) = controller::read(
+        &whole_controller,
+        fallback,
+        (&motor, &inverter),
+        in_error((&motor_reader, &motor), (&inverter_reader, &inverter)),
+        &mut errors,
+    );
 
     let mut warnings = vec![];
     let contradicts =
@@ -102,6 +109,21 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
 }
 
 fn check_name(ast: &SpecAst, errors: &mut Collector) {
+/// Fields that options need, and that are stated but in error.
+fn in_error(
+    (of_motor, motor): (&Reader, &Motor),
+    (of_inverter, inverter): (&Reader, &Inverter),
+) -> Vec<&'static str> {
+    let is_read = [
+        (of_motor, "inertia", motor.inertia.is_some()),
+        (of_inverter, "dead_time", inverter.dead_time.is_some()),
+    ];
+    let is_wrong =
+        |(reader, name, is_read): &(&Reader, &str, bool)| reader.field(name).is_some() && !is_read;
+    let wrong = is_read.into_iter().filter(is_wrong);
+    wrong.map(|(_, name, _)| name).collect()
+}
+
     let name = &ast.name.text;
     let is_type_name = name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')

@@ -40,7 +40,9 @@ pub(super) fn check(
     let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
     let window = times.window(dead_time, sensing.phases.phases().len());
     let needed = window.before.max(window.after);
-    if needed > half_low * (1.0 + 1e-9) {
+    // A dead time that is too long by itself is told of once.
+    let is_told = inverter.long_dead_time().is_some();
+    if needed > half_low * (1.0 + 1e-9) && !is_told {
         let default = |time: f64| move || engineering(time, "s");
         let is_before = window.before >= window.after;
         let mut parts = [

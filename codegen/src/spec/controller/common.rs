@@ -381,6 +381,8 @@ pub(crate) struct Surroundings {
     pub adc_gain: Option<f64>,
     /// Dead time, second; 0 where none is stated.
     pub dead_time: f64,
+    /// Fields of motor and inverter that are stated but in error, which has been told.
+    pub in_error: Vec<&'static str>,
     /// Whether legs must be low for a while in every period, for their sensors or their bootstrap.
     pub must_be_low: bool,
     /// Whether all currents are known while a leg is off.
@@ -706,6 +708,9 @@ fn read_speed_loop(
         ));
     }
     let Some(inertia) = drive.inertia else {
+        if drive.in_error.contains(&"inertia") {
+            return None;
+        }
         let at = reader
             .field("speed_loop")
             .map_or(reader.location(), |field| &field.location);
@@ -792,6 +797,7 @@ pub(crate) fn read_dead_time_compensation(
     let is_on = reader.switch(errors, OPTION) == Some(true);
     if is_on
         && drive.dead_time <= 0.0
+        && !drive.in_error.contains(&"dead_time")
         && let Some(field) = reader.field(OPTION)
     {
         let setting = format!("{OPTION}: on");
