@@ -6,6 +6,7 @@
 use super::ast::{Board, Field, Name, OF_CORE, Section, SpecAst, Value};
 use super::reader::Reader;
 use super::schema;
+use super::sensing::{IN_PHASE, LOW_SIDE};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Diagnostic, Location};
 
@@ -18,7 +19,7 @@ const OF_SETTINGS: [(&str, &str, &[&str]); 3] = [
     ),
     (
         "current_sensing",
-        "low_side",
+        LOW_SIDE,
         &[
             "settling_time",
             "aperture_time",
@@ -144,18 +145,19 @@ fn unreadable(
 /// Current sensors that the board does not have: three of two, or sensors in another place. Which two phases have one
 /// is a question of names.
 fn sensors_not_there(whole: &Section, board: &Section) -> Option<Diagnostic> {
-    ["sensed_phases", "current_sensing"]
-        .into_iter()
-        .find_map(|name| {
-            let (given, own) = (whole.field(name)?, board.field(name)?);
-            let is_there = match (&given.value, &own.value) {
-                (Value::Word(given), Value::Word(own)) if name == "sensed_phases" => {
-                    given != "abc" || own == "abc"
-                }
-                (given, own) => given.to_string() == own.to_string(),
-            };
-            (!is_there).then(|| catalogue::sensors_not_there(&part(name, given), &part(name, own)))
-        })
+    // The words of sensors that a board may lack; what cannot be read is told of elsewhere.
+    let of_sensors = [
+        ("sensed_phases", &["abc"][..]),
+        ("current_sensing", &[IN_PHASE, LOW_SIDE]),
+    ];
+    of_sensors.into_iter().find_map(|(name, words)| {
+        let (given, own) = (whole.field(name)?, board.field(name)?);
+        let Value::Word(word) = &given.value else {
+            return None;
+        };
+        let is_lacking = words.contains(&word.as_str()) && own.value.to_string() != *word;
+        is_lacking.then(|| catalogue::sensors_not_there(&part(name, given), &part(name, own)))
+    })
 }
 
 fn part(field: &'static str, written: &Field) -> Part {

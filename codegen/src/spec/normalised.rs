@@ -1,6 +1,7 @@
 //! The normalised text of a checked specification, as documented in `normalised.md`: TOML, SI
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
+use super::sensing::LOW_SIDE;
 use super::weakening::share_of_torque;
 use super::words::Words;
 use super::{
@@ -162,7 +163,7 @@ fn write_sensors(text: &mut Text, inverter: &InverterSpec) {
             converters,
             lead,
         } = times;
-        text.word("current_sensing", "low_side");
+        text.word("current_sensing", LOW_SIDE);
         text.number("settling_time", settling);
         text.number("aperture_time", aperture);
         text.number("conversion_time", conversion);

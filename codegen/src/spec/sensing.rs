@@ -25,6 +25,10 @@ impl SensedPhases {
     }
 }
 
+/// Words of `current_sensing`.
+pub const IN_PHASE: &str = "in_phase";
+pub const LOW_SIDE: &str = "low_side";
+
 /// Where the sensors are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CurrentSensing {

@@ -3,7 +3,7 @@
 use crate::diagnostics::Collector;
 use crate::diagnostics::catalogue;
 use crate::spec::reader::Reader;
-use crate::spec::sensing::SensingTimes;
+use crate::spec::sensing::{IN_PHASE, LOW_SIDE, SensingTimes};
 use crate::spec::{CurrentSensing, SensedPhases};
 
 /// What was read of the sensors' place.
@@ -69,8 +69,6 @@ fn time(reader: &Reader, errors: &mut Collector, name: &'static str) -> Option<f
 /// the low legs need their times, others take none.
 fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing> {
     const FIELD: &str = "current_sensing";
-    const IN_PHASE: &str = "in_phase";
-    const LOW_SIDE: &str = "low_side";
     const NEEDED: [(&str, &str); 3] = [
         ("settling_time", "1 us"),
         ("aperture_time", "200 ns"),

@@ -166,6 +166,16 @@ fn sensors_that_the_board_does_not_have_are_refused() {
         assert!(text.contains("error[HX0330]"), "{text}");
         assert!(text.contains(&format!("its `{name}` is {own}")), "{text}");
     }
+    // What cannot be read says nothing of the board.
+    for (field, code) in [
+        ("current_sensing: lowside", "HX0207"),
+        ("current_sensing: in phase", "HX0201"),
+        ("sensed_phases: a b", "HX0201"),
+    ] {
+        let text = told(field);
+        assert!(text.contains(&format!("error[{code}]")), "{text}");
+        assert!(!text.contains("HX0330"), "{text}");
+    }
 }
 
 #[test]
