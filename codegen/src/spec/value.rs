@@ -207,6 +207,9 @@ fn read_unit(
     at: &Location,
 ) -> Result<(Option<Unit>, Vec<Basis>), Diagnostic> {
     let given = |lexemes: &[Lexeme]| format!("{digits} {}", spelt(lexemes));
+    if let Some(meant) = voltage_over_speed(field, digits, lexemes) {
+        return Err(catalogue::voltage_at_speed(at, field.name, text, &meant));
+    }
     if let Some(signs) = stray_signs(lexemes) {
         let examples = field.examples(&named(lexemes));
         return Err(catalogue::stray_signs(
@@ -270,6 +273,19 @@ fn read_unit(
         nearest,
         &right,
     ))
+}
+
+/// `3.6 Vpp/200 rpm` of `3.6 Vpp at 200 rpm`.
+fn voltage_over_speed(field: FieldRule, digits: &str, lexemes: &[Lexeme]) -> Option<String> {
+    let is_at = |lexeme: &Lexeme| match lexeme {
+        Lexeme::Word(word) => word == "at",
+        Lexeme::Symbol(sign) => *sign == '@',
+        Lexeme::Number(_) => false,
+    };
+    let place = lexemes.iter().position(is_at)?;
+    let [voltage, speed] = [&lexemes[..place], &lexemes[place + 1..]].map(spelt);
+    let takes_emf = field.dimensions().contains(&Dimension::EmfConstant);
+    takes_emf.then(|| format!("{digits} {voltage}/{speed}"))
 }
 
 /// The unit of a spelling, and the basis that it says. `KV`, in any case, is what makers of

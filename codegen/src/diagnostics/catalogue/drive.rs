@@ -2,6 +2,7 @@
 
 use super::internal;
 use super::part::{Part, with_parts};
+use super::values::per_krpm;
 use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, list, percent, rpm, rpm_at_most,
     significant,
@@ -54,12 +55,18 @@ pub fn implausible_emf(stated: &Part, phase: f64, low: f64, high: f64) -> Diagno
         Code::OutOfRange,
         &stated.location,
         format!(
-            "`{}`: {} is {} per phase, outside {} to {}; check the number and its unit",
+            "`{}`: {} is {} per phase, outside {} to {}; {}",
             stated.field,
             stated.given,
             engineering(phase, "V/(rad/s)"),
             engineering(low, "V/(rad/s)"),
             engineering(high, "V/(rad/s)"),
+            per_krpm(&stated.given)
+                .filter(|_| phase > high)
+                .map_or_else(
+                    || "check the number and its unit".to_owned(),
+                    |meant| format!("did you mean `{meant}`?")
+                ),
         ),
     )
 }

@@ -145,6 +145,30 @@ pub fn quantity_of_other_field(
     Diagnostic::new(Code::WrongDimension, at, message)
 }
 
+/// An EMF constant in the field of another one, of volts for 1 rpm that no motor has.
+pub fn emf_of_one_rpm(at: &Location, field: &str, given: &str) -> Option<Diagnostic> {
+    let meant = per_krpm(given)?;
+    let inverse = given.replacen("V/rpm", "rpm/V", 1);
+    let message = format!(
+        "`{field}`: {given} is an EMF constant, more than any motor has; write `back_emf: {meant}`, or `speed_constant: {inverse}`"
+    );
+    Some(Diagnostic::new(Code::WrongDimension, at, message))
+}
+
+/// A constant for 1000 rpm, as data sheets state it, in place of one for 1 rpm.
+pub(super) fn per_krpm(given: &str) -> Option<String> {
+    let meant = given.replacen("V/rpm", "V/krpm", 1);
+    (meant != given).then_some(meant)
+}
+
+/// A voltage at a speed, which is a constant once it is divided by it; `meant`: the quotient.
+pub fn voltage_at_speed(at: &Location, field: &str, given: &str, meant: &str) -> Diagnostic {
+    let message = format!(
+        "`{field}`: cannot read `{given}`; write the speed below a line, `{field}: {meant}`"
+    );
+    Diagnostic::new(Code::MalformedValue, at, message)
+}
+
 /// Pole pairs where poles are asked for.
 pub fn pairs_of_poles(at: &Location, given: &str, pairs: &str) -> Diagnostic {
     let message =

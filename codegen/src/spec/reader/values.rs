@@ -24,6 +24,9 @@ pub(crate) struct Given<'a> {
     pub part: Part,
 }
 
+/// No motor has so many volts to a rad/s between two terminals: it makes a kilovolt at 1000 rpm.
+const MOST_EMF: f64 = 10.0;
+
 impl<'a> Reader<'a> {
     /// The number of a field that takes one.
     fn number(&self, errors: &mut Collector, name: &'static str) -> Option<(Given<'a>, Kind)> {
@@ -123,10 +126,17 @@ impl<'a> Reader<'a> {
         };
         if !dimensions.contains(&dimension) {
             let (got, wanted) = (dimension.name(), dimensions[0].name());
-            errors.push(match other_names::of_emf(name, dimension) {
-                Some(meant) => catalogue::quantity_of_other_field(at, name, text, got, meant),
-                None => catalogue::wrong_dimension(at, name, text, got, wanted, &right),
-            });
+            let is_absurd = dimension == Dimension::EmfConstant && given.si > MOST_EMF;
+            let of_one_rpm = is_absurd.then(|| catalogue::emf_of_one_rpm(at, name, text));
+            errors.push(
+                match (of_one_rpm.flatten(), other_names::of_emf(name, dimension)) {
+                    (Some(error), Some(_)) => error,
+                    (None, Some(meant)) => {
+                        catalogue::quantity_of_other_field(at, name, text, got, meant)
+                    }
+                    (_, None) => catalogue::wrong_dimension(at, name, text, got, wanted, &right),
+                },
+            );
             return None;
         }
         self.within(
