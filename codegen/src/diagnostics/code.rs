@@ -183,6 +183,8 @@ codes! {
     WeakeningEnds = 616,
     /// Two constants that state their bases differ by more than data sheets round.
     ConstantsApart = 617,
+    /// An inertia with which the rated torque takes an unlikely time to rated speed.
+    UnlikelyInertia = 618,
     /// An internal error of the generator.
     Internal = 901,
 }

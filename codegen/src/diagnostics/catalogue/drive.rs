@@ -82,6 +82,9 @@ pub enum BusRemedy {
     Current(f64),
 }
 
+/// Why a data sheet's speed may be beyond the bus.
+const AT_NOMINAL: &str = " if the data sheet states it at a higher supply (its `nominal_voltage`)";
+
 impl fmt::Display for BusRemedy {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -91,9 +94,6 @@ impl fmt::Display for BusRemedy {
                 rpm_at_most(reachable)
             ),
             Self::BelowSpeed(reachable) => write!(
-/// Why a data sheet's speed may be beyond the bus.
-const AT_NOMINAL: &str = " if the data sheet states it at a higher supply (its `nominal_voltage`)";
-
                 out,
                 "lower `rated_speed` below {} (reading the sensors in the low legs takes a part of the bus, too){AT_NOMINAL}",
                 rpm_at_most(reachable)
@@ -392,6 +392,26 @@ fn agreement(of: &Contradiction) -> String {
     } else {
         format!("{agree}; ")
     }
+}
+
+/// An inertia with which a rated torque takes an unlikely time from rest to rated speed; `time`, and the range of likely
+/// ones, second.
+pub fn unlikely_inertia(inertia: &Part, torque: f64, time: f64, likely: [f64; 2]) -> Diagnostic {
+    let [least, most] = likely.map(|time| engineering(time, "s"));
+    let time = if time < 1.0 {
+        engineering(time, "s")
+    } else {
+        format!("{} s", significant(time))
+    };
+    Diagnostic::new(
+        Code::UnlikelyInertia,
+        &inertia.location,
+        format!(
+            "`inertia`: {}: from rest to rated speed takes {time} with the rated {}, and most drives take {least} to {most}; check the unit (g cm2, kg cm2, kg m2), and that it is of the rotor and what it moves",
+            inertia.given,
+            engineering(torque, "Nm"),
+        ),
+    )
 }
 
 /// Two constants that state their bases and do not agree; `ratio`: the one that is taken over the other; `changes`:

@@ -62,6 +62,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let contradicts =
         consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
     let decay = relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
+    relations::check_inertia(&motor_reader, &motor, &mut warnings);
     // A wrong R or L is told of once.
     if !contradicts && decay != Some(relations::Decay::Absurd) {
         // Torque and EMF in one wrong basis are one mistake.
@@ -108,7 +109,6 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     }
 }
 
-fn check_name(ast: &SpecAst, errors: &mut Collector) {
 /// Fields that options need, and that are stated but in error.
 fn in_error(
     (of_motor, motor): (&Reader, &Motor),
@@ -124,6 +124,7 @@ fn in_error(
     wrong.map(|(_, name, _)| name).collect()
 }
 
+fn check_name(ast: &SpecAst, errors: &mut Collector) {
     let name = &ast.name.text;
     let is_type_name = name.starts_with(|c: char| c.is_ascii_uppercase())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')

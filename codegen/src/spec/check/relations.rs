@@ -3,7 +3,7 @@
 use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Code, Collector, at_least, engineering};
+use crate::diagnostics::{Code, Collector, Diagnostic, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
 use crate::spec::{BusSource, CurrentSensing, Envelope, MotorSpec, Reference, RotorSensing};
@@ -193,6 +193,26 @@ pub(super) fn check_bus(
             ),
         ),
     ));
+    Some(())
+}
+
+/// Times from rest to rated speed with rated torque, second: a bare rotor takes more, a vehicle less.
+const RUN_UP: [f64; 2] = [1e-3, 60.0];
+
+/// Warns of an inertia that is likely in another unit.
+pub(super) fn check_inertia(
+    reader: &Reader,
+    motor: &Motor,
+    warnings: &mut Vec<Diagnostic>,
+) -> Option<()> {
+    let (inertia, whole) = (motor.inertia?, motor.finish()?);
+    let torque = whole.torque_rating();
+    let time = inertia * whole.rated_speed / torque;
+    let [least, most] = RUN_UP;
+    if !(least..=most).contains(&time) {
+        let part = reader.part("inertia", String::new);
+        warnings.push(catalogue::unlikely_inertia(&part, torque, time, RUN_UP));
+    }
     Some(())
 }
 
