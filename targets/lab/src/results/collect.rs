@@ -390,6 +390,7 @@ const PAPER_NOTES: [&str; 5] = [
 mod tests {
     use super::plan;
     use crate::engine::{PlantOptions, SelectedMotor};
+    use crate::results::unstated::stating;
     use crate::results::{Capture, PAPER_MOTOR, design_table};
     use hexagen_codegen::spec::apply_variant;
 
@@ -417,10 +418,12 @@ mod tests {
     #[test]
     fn variants_of_a_drive_with_a_speed_loop_are_measured_at_the_demanded_torque() {
         let mut motor = paper_motor();
-        motor.ast.controller.fields.clear();
-        let lines = "speed_loop=on,speed_bandwidth=5Hz,acceleration_limit=500rpm/s";
-        apply_variant(&mut motor.ast, &format!("pdcc:{lines}")).expect("is a variant");
+        let inertia = "inertia = \"2e-3 kg m2\"";
+        motor.ast = stating(&motor.ast, "motor", inertia);
+        let options = "speed_loop=on,speed_bandwidth=5Hz,acceleration_limit=500rpm/s";
+        apply_variant(&mut motor.ast, &format!("pdcc:{options}")).expect("is a variant");
         let rows = plan(&motor, design_table(), [false; 2], &mut Vec::new()).expect("rows");
+        assert_eq!(rows.len(), design_table().len());
         for row in &rows {
             for (_, drive) in &row.drives {
                 let (slow, demand) = (0.2 * drive.spec.motor.rated_speed, drive.demand());
