@@ -529,7 +529,8 @@ fn what_is_missing_stands_in_the_file_to_be_filled_in() {
         })
         .collect::<Vec<_>>()
         .join("\n")
-        .replace("poles = 30", "poles = 8");
+        .replace("poles = 30", "poles = 8")
+        .replace("angle_pole_pairs = 15", "angle_pole_pairs = 4");
     fs::write(path, filled).expect("can be written");
     let said = run(["check", path]);
     assert_eq!(said.code, 0, "{said:?}");
