@@ -63,6 +63,16 @@ fn classes_do_what_physics_says() {
             assert!(row.after_ms.is_some_and(|ms| ms < 30.0), "{row:?}");
         }
     }
+    // An open wire leaves most of the mean torque at low speed, but no even one.
+    let open = row(&study, "wire of phase a open");
+    let sound = study
+        .of_part(Part::Sound)
+        .filter_map(|row| row.ripple_pp_pct);
+    let sound = sound.fold(0.0, f64::max);
+    assert!(
+        open.ripple_pp_pct.is_none_or(|ripple| ripple > 2.0 * sound),
+        "{open:?}, {sound}"
+    );
     // The supervisor documents that it does not see these: `unseen.rs`.
     let frozen = row(&study, "current sensor a: stuck at 0 A");
     assert_eq!(frozen.seen, Seen::Never);

@@ -89,10 +89,10 @@ fn print(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     print_table(&table(study))?;
     print_text(&paragraph(&format!(
         "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
-         turning rotor.\nlargest: true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A. \
+         turning rotor.\npeak: largest true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A. \
          A short draws what a bus whose voltage holds drives through {} of switches and cables, until something ends it.\n\
-         torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip. The \
-         shaft is held at its speed.",
+         torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip; ripple: \
+         peak to peak in percent of the same mean, the greatest of these runs. The shaft is held at its speed.",
         significant(study.max_current_a, 3),
         significant(study.trip_current_a, 3),
         engineering(SHORT_RESISTANCE, "ohm"),
@@ -107,8 +107,9 @@ fn table(study: &FaultStudy) -> Table {
         Column::number("trips", ""),
         Column::text("by"),
         Column::number("after", "ms"),
-        Column::number("largest", "A"),
+        Column::number("peak", "A"),
         Column::number("torque", "%"),
+        Column::number("ripple", "%"),
     ];
     let mut table = Table::new("", columns);
     for part in Part::ALL {
@@ -124,7 +125,7 @@ fn table(study: &FaultStudy) -> Table {
     table
 }
 
-fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 6] {
+fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 7] {
     let tripped = if row.seen == Seen::Untried {
         "untried".to_owned()
     } else {
@@ -140,6 +141,9 @@ fn cells(row: &FaultRow, trip_current: f64) -> [Cell; 6] {
             .into(),
         significant(Some(row.largest_a).filter(|_| is_tried), 3).into(),
         row.torque_pct.map_or_else(|| "-".to_owned(), range).into(),
+        row.ripple_pp_pct
+            .map_or_else(|| "-".to_owned(), |ripple| format!("{ripple:.0}"))
+            .into(),
     ]
 }
 

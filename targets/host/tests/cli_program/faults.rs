@@ -47,6 +47,7 @@ fn the_study_is_one_json_object_whose_totals_are_those_of_its_rows() {
         assert_eq!(number(row, "tripped"), tripped, "{row}");
         assert_eq!(row["after_ms"].is_null(), tripped == 0.0, "{row}");
         assert_eq!(row["torque_pct"].is_null(), tripped == 8.0, "{row}");
+        assert_eq!(row["ripple_pp_pct"].is_null(), tripped == 8.0, "{row}");
         let ratio = number(row, "largest_a") / number(&study, "max_current_a");
         assert!((number(row, "largest_over_max") / ratio - 1.0).abs() < 1e-12);
     }
@@ -71,6 +72,7 @@ fn the_table_says_what_trips_by_what_and_what_follows() {
         "| current sensor a: gain halved ",
         "| ADC range ",
         "| nothing broken:",
+        "| ripple |",
         "50 mohm of switches and cables, until",
         "sound drives that trip: 0 of",
         "Stall detection is off",

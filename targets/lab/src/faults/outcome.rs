@@ -58,6 +58,9 @@ pub struct FaultRow {
     /// point: the least and the greatest of the runs that did not trip. Negative against the
     /// demand.
     pub torque_pct: Option<[f64; 2]>,
+    /// Ripple of the torque in the second half of the time after the fault, peak to peak of the means over a
+    /// control period, in percent of the sound drive's mean: the greatest of the runs that did not trip.
+    pub ripple_pp_pct: Option<f64>,
 }
 
 /// Runs with a cause.
@@ -158,11 +161,12 @@ impl FaultRow {
         let largest =
             |runs: &mut dyn Iterator<Item = &Run>| runs.map(|run| run.largest).reduce(f64::max);
         let largest_a = largest(&mut reached()).unwrap_or(0.0);
-        let torques = runs.iter().zip(sound);
-        let torques = torques.filter(|(run, _)| !run.tripped_before && run.trip.is_none());
-        let torques = torques.filter_map(|(run, sound)| {
+        let untripped = runs.iter().zip(sound);
+        let untripped = untripped.filter(|(run, _)| !run.tripped_before && run.trip.is_none());
+        let torques = untripped.clone().filter_map(|(run, sound)| {
             percent(run.torque * sound.torque.signum(), sound.torque, 0.0)
         });
+        let ripples = untripped.filter_map(|(run, sound)| percent(run.ripple, sound.torque, 0.0));
         let times = trips.iter().map(|trip| 1e3 * trip.time_s);
         Self {
             part: class.part,
@@ -179,6 +183,7 @@ impl FaultRow {
                 let [least, greatest] = range.unwrap_or([torque; 2]);
                 Some([torque.min(least), torque.max(greatest)])
             }),
+            ripple_pp_pct: ripples.reduce(f64::max),
         }
     }
 

@@ -64,6 +64,8 @@ pub(super) struct Run {
     pub(super) largest: f64,
     /// Mean torque after the fault, Nm.
     pub(super) torque: f64,
+    /// Greatest less least torque, means over a period, in the second half of the time after the fault, Nm.
+    pub(super) ripple: f64,
 }
 
 /// A drive with its plant and everything that runs of it have in common.
@@ -132,7 +134,10 @@ impl<'d> Bench<'d> {
             closed.plant().time()
         };
         let mut after = After::default();
-        closed.run(self.periods_after(&run, class.defect), &mut after);
+        let periods = self.periods_after(&run, class.defect);
+        closed.run(periods / 2, &mut after);
+        after.range = None;
+        closed.run(periods - periods / 2, &mut after);
         let since = |trip: Trip| Trip {
             time_s: trip.time_s - begun,
             ..trip
@@ -144,6 +149,7 @@ impl<'d> Bench<'d> {
             trip,
             largest: after.largest,
             torque: after.torque / after.periods,
+            ripple: after.range.map_or(0.0, |[least, most]| most - least),
         })
     }
 
@@ -226,6 +232,8 @@ struct After {
     torque: f64,
     /// Number of periods.
     periods: f64,
+    /// Least and greatest of the periods' mean torques, Nm.
+    range: Option<[f64; 2]>,
 }
 
 impl Observer for After {
@@ -240,7 +248,10 @@ impl Observer for After {
 
 impl Recorder for After {
     fn period(&mut self, step: &Step<'_>) {
-        self.torque += step.plant.truth().mean_torque;
+        let torque = step.plant.truth().mean_torque;
+        self.torque += torque;
         self.periods += 1.0;
+        let [least, most] = self.range.unwrap_or([torque; 2]);
+        self.range = Some([least.min(torque), most.max(torque)]);
     }
 }
