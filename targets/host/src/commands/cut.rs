@@ -5,7 +5,7 @@ use hexagen_codegen::spec::{BusSource, InverterSpec};
 use hexagen_lab::judgement::limit_acts;
 
 /// The limit of the bus current and the fade that cut a torque on a bus of `v_bus` volt, in words; none where neither
-/// may. `bus_current`: the mean that was drawn, if it is known, ampere.
+/// does. `bus_current`: the mean that was drawn, ampere; none where no limit needs it.
 pub fn cut_by(
     inverter: &InverterSpec,
     is_motoring: bool,
@@ -42,7 +42,7 @@ fn of_current(
     } else {
         ("return_current_limit", inverter.bus_currents.returned)
     };
-    let acts = |most: &f64| bus_current.is_none_or(|current| limit_acts(*most, current.abs()));
+    let acts = |most: &f64| bus_current.is_some_and(|current| limit_acts(*most, current.abs()));
     Some(format!(
         "`{name}` of {}",
         engineering(most.filter(acts)?, "A")

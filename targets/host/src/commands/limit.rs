@@ -6,12 +6,14 @@ use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_wa
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::{
-    LimitOptions, LimitOutcome, Side, SpeedLimit, TOLERANCE, percent, speed_limit,
+    LimitOptions, LimitOutcome, RunOptions, Side, SpeedLimit, TOLERANCE, measure, percent,
+    speed_limit,
 };
 use hexagen_lab::engine::{Prepared, SelectedMotor};
 use hexagen_lab::envelope::{SpeedBounds, envelope_on};
 use hexagen_lab::text::significant;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// Options of `limit`.
 #[derive(Args, Clone, Debug)]
@@ -40,11 +42,18 @@ pub struct Outcome {
     pub without_window: Option<SpeedLimit>,
 }
 
+/// A scan of a drive.
+struct Scan {
+    limit: SpeedLimit,
+    /// Mean current drawn from the bus at the last speed, ampere, where that is limited and torque is lost.
+    bus_current: Option<f64>,
+}
+
 /// Scans for the limit, and for that without the board's window, where there is one.
 ///
 /// # Errors
 /// Diagnostics, or a plant option out of range.
-pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit, Option<SpeedLimit>), Failure> {
+fn collect(options: &Options) -> Result<(Prepared, Scan, Option<Scan>), Failure> {
     let arguments = &options.run;
     let motor = SelectedMotor::find(&arguments.motor, &arguments.plant.options())?;
     let drive = motor.prepare_for_torque(arguments.controller.as_deref())?;
@@ -65,7 +74,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, SpeedLimit, Option<SpeedL
 }
 
 /// The limit of a drive.
-fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failure> {
+fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<Scan, Failure> {
     let torque = arguments.torque(drive);
     if torque == 0.0 {
         return Err(Failure::Argument(
@@ -82,14 +91,20 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failur
     let set_point = arguments.plant.options().set_point(drive, torque);
     let scan = LimitOptions::new(drive.rated_rpm(), torque);
     let progress = spinner("scanning speeds");
-    let limit = speed_limit(
-        &plant,
-        &run,
-        &scan,
-        drive.maker(arguments.model(), set_point),
-    );
+    let maker = drive.maker(arguments.model(), set_point);
+    let limit = speed_limit(&plant, &run, &scan, &maker)?;
+    let last = limit.curve.last().filter(|_| {
+        let limits = drive.spec.inverter.bus_currents;
+        let is_limited = limits.drawn.or(limits.returned).is_some();
+        is_limited && limit.lost == Some(Side::Below)
+    });
+    let at_last = last.map(|(rpm, _)| {
+        let omega_m = rpm * TAU / 60.0;
+        measure(&plant, &RunOptions { omega_m, ..run }, &maker)
+    });
     progress.finish_and_clear();
-    Ok(limit?)
+    let bus_current = at_last.transpose()?.and_then(|at| at.figures.bus_current_a);
+    Ok(Scan { limit, bus_current })
 }
 
 /// Runs the command.
@@ -97,30 +112,31 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<SpeedLimit, Failur
 /// # Errors
 /// As [`collect`], or a drive that tripped above its limit.
 pub fn run(options: &Options) -> Result<(), Failure> {
-    let (drive, limit, without_window) = collect(options)?;
+    let (drive, own, free) = collect(options)?;
     let torque = options.run.torque(&drive);
     let envelope = envelope_on(&drive.spec, &options.run.plant.plant(&drive)?);
+    let v_bus = options.run.plant.v_bus;
+    let v_bus = v_bus.unwrap_or(drive.spec.inverter.v_bus);
+    let told = |scan: &Scan| found(scan, torque, &drive, v_bus);
+    let texts = (told(&own), free.as_ref().map(told));
     let outcome = Outcome {
         ran: Ran::of(&drive, options.run.model()),
         torque_nm: torque,
         bounds: SpeedBounds::of(&envelope, torque),
-        limit,
-        without_window,
+        limit: own.limit,
+        without_window: free.map(|free| free.limit),
     };
     if options.run.json {
         print_json(&outcome)?;
     } else {
-        let v_bus = options.run.plant.v_bus;
-        let v_bus = v_bus.unwrap_or(drive.spec.inverter.v_bus);
-        print_found(&outcome, &drive, v_bus)?;
+        print_found(&outcome, texts)?;
     }
     Failure::of_trip(outcome.limit.tripped)
 }
 
-fn print_found(outcome: &Outcome, drive: &Prepared, v_bus: f64) -> Result<(), Failure> {
-    let told = |limit: &SpeedLimit| found(limit, outcome.torque_nm, drive, v_bus);
-    let own = told(&outcome.limit);
-    let free = match outcome.without_window.as_ref().map(told) {
+/// Prints the limit; `texts` say it in words, with that without the board's window.
+fn print_found(outcome: &Outcome, (own, free): (String, Option<String>)) -> Result<(), Failure> {
+    let free = match free {
         None => String::new(),
         Some(free) if free == own => "; the same with in-phase sensors".to_owned(),
         Some(free) => format!("; with in-phase sensors {free}"),
@@ -143,9 +159,10 @@ fn print_found(outcome: &Outcome, drive: &Prepared, v_bus: f64) -> Result<(), Fa
 }
 
 /// A limit in words, on a bus of `v_bus` volt.
-fn found(limit: &SpeedLimit, torque: f64, drive: &Prepared, v_bus: f64) -> String {
+fn found(scan: &Scan, torque: f64, drive: &Prepared, v_bus: f64) -> String {
+    let Scan { limit, bus_current } = scan;
     let is_below = limit.lost == Some(Side::Below);
-    let cut = is_below.then(|| cut_by(&drive.spec.inverter, torque > 0.0, v_bus, None));
+    let cut = is_below.then(|| cut_by(&drive.spec.inverter, torque > 0.0, v_bus, *bus_current));
     let cut = cut.flatten().map(|cut| format!(", with {cut}"));
     let why = limit.why().unwrap_or_default() + &cut.unwrap_or_default();
     match (limit.outcome, limit.limit_rpm, limit.limit_pct) {
