@@ -21,6 +21,7 @@ pub use verdict::verdict;
 
 use super::{Block, Color, Key, PHASES, Page, Section, Sign, Switch, variant};
 use crate::results::{Capture, Results, Variant};
+use hexagen_codegen::spec::Reference;
 
 /// The report of a motor.
 pub fn results_page(data: &Results) -> Page {
@@ -117,6 +118,11 @@ fn phase_keys(names: [&str; 3]) -> Vec<Key> {
 fn plotted(data: &Results) -> impl Iterator<Item = (usize, &Variant)> {
     let variants = data.variants.iter().enumerate();
     variants.filter(|(_, variant)| !variant.records.is_empty())
+}
+
+/// Whether a plotted current is demanded in proportion to the EMF, a sine where that is one.
+fn has_proportional(data: &Results) -> bool {
+    plotted(data).any(|(_, variant)| variant.reference == Reference::Proportional)
 }
 
 /// What tells the rotor's position.

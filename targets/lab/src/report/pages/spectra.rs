@@ -1,6 +1,6 @@
 //! Harmonics of the phase current, with the ideal wave, and of the torque.
 
-use super::{plotted, switches};
+use super::{has_proportional, plotted, switches};
 use crate::closed_loop::{
     Trace, harmonic_of_quasi_square, harmonics_of_current, harmonics_of_torque,
 };
@@ -56,8 +56,11 @@ pub fn blocks(data: &Results) -> Vec<Block> {
     if plotted(data).next().is_none() {
         return Block::nothing("records");
     }
-    let ideal =
-        "ideal quasi-square wave: 100 % divided by the order (an ideal torque has no harmonic)";
+    let ideal = if has_proportional(data) {
+        "quasi-square wave, for comparison: 100 % divided by the order (neither a sine nor an ideal torque has a harmonic)"
+    } else {
+        "ideal quasi-square wave: 100 % divided by the order (an ideal torque has no harmonic)"
+    };
     let mut blocks = vec![
         switches(data, |color| Sign::Field(color, 1.0)),
         Block::Legend(vec![Sign::line(INK, 2.0).means(ideal)]),

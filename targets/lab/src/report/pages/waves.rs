@@ -1,6 +1,6 @@
 //! Phase currents, trajectory and torque over one electrical turn.
 
-use super::{as_line, phase_keys, plotted, switches};
+use super::{as_line, has_proportional, phase_keys, plotted, switches};
 use crate::closed_loop::Trace;
 use crate::report::plot::{
     Columns, TURN, Wave, columns, reference_phase, torque_range, trajectory, wave,
@@ -221,10 +221,15 @@ pub fn trajectories(data: &Results) -> Vec<Block> {
         return Block::nothing("records");
     }
     let color = variant(0);
+    let reference = if has_proportional(data) {
+        "hexagon between the corners (circles) of a quasi-square reference in sectors S1 to S6; a sinusoidal reference of that peak is the circle that touches its sides"
+    } else {
+        "ideal hexagon between the reference corners (circles) of sectors S1 to S6"
+    };
     vec![
         switches(data, as_line),
         Block::Legend(vec![
-            ideal_key("ideal hexagon between the reference corners (circles) of sectors S1 to S6"),
+            ideal_key(reference),
             Sign::line(color, 2.5).means("mean over one control period"),
             Sign::line(color, 1.0).means("with PWM ripple, pale"),
         ]),
