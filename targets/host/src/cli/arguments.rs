@@ -437,3 +437,11 @@ impl RunArguments {
 pub fn parse_rpm(text: &str) -> Result<f64, String> {
     quantity::rpm(text)
 }
+
+/// Newton metres of a text; other units of torque are converted.
+///
+/// # Errors
+/// Why the text is not a torque.
+pub fn parse_torque(text: &str) -> Result<f64, String> {
+    quantity::torque(text)
+}

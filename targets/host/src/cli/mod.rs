@@ -13,6 +13,7 @@ mod quantity;
 
 pub use arguments::{
     Arguments, Command, DriveArguments, Emit, PlantArguments, RunArguments, Selection, parse_rpm,
+    parse_torque,
 };
 pub use failure::Failure;
 pub use output::{

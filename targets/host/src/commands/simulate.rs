@@ -3,14 +3,15 @@
 use super::cut::cut_by;
 use super::ran::Ran;
 use crate::cli::{
-    self, Failure, PlantArguments, RunArguments, parse_rpm, print_json, print_text, spinner, warn,
-    write_file,
+    self, Failure, PlantArguments, RunArguments, parse_rpm, parse_torque, print_json, print_text,
+    spinner, warn, write_file,
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{Reference, RotorSensing};
 use hexagen_lab::closed_loop::{
-    Aim, FiguresOfMerit, MOST_RECORDED, Measurement, RunOptions, SETTLED, Speed, Trip, measure,
+    Aim, FiguresOfMerit, LoadResponse, LoadStep, MOST_RECORDED, Measurement, RunOptions, SETTLED,
+    Speed, Trip, measure,
 };
 use hexagen_lab::engine::{Prepared, run_of};
 use hexagen_lab::envelope::envelope_on;
@@ -36,6 +37,10 @@ pub struct Options {
     /// or start, whichever is faster. Without it a speed loop is left out
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
     pub speed_set: Option<f64>,
+    /// Step of the load torque in the middle of the measurement, on top of --load: prints the dip of the speed, its
+    /// overshoot and the time until it is back within 2 %. A torque that changes has no figures of merit
+    #[arg(long, value_name = "NM", value_parser = parse_torque, allow_hyphen_values = true, requires = "speed_set")]
+    pub load_step: Option<f64>,
     /// Write the measurement of the first run, one row per period
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -55,6 +60,12 @@ impl Options {
         }
         plant
     }
+
+    /// Speed to which the tolerance of a settled one refers where the set-point is slower, rpm.
+    fn least_rpm(&self, drive: &Prepared) -> f64 {
+        let least = drive.spec.inverter.minimum_speed * 60.0 / TAU;
+        least.max(self.start_rpm().abs())
+    }
 }
 
 /// A run and its figures of merit.
@@ -72,6 +83,9 @@ pub struct Outcome {
     /// Speed reached by a free shaft.
     #[serde(flatten)]
     pub speed: Option<Speed>,
+    /// What a load step does to it.
+    #[serde(flatten)]
+    pub response: Option<LoadResponse>,
     /// Figures of merit; null where one does not exist.
     #[serde(flatten)]
     pub figures: FiguresOfMerit,
@@ -94,6 +108,7 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
         .options()
         .run(&drive, options.start_rpm(), torque);
     run.aim = aim(options, &drive, &plant, torque)?;
+    run.load_step = load_step(options, &drive)?;
     check_duration(&run, &plant, options)?;
     let mut set_point = deviations.set_point(&drive, torque);
     set_point.rpm = options.speed_set;
@@ -101,7 +116,9 @@ pub fn collect(options: &Options) -> Result<(Prepared, RunOptions, Measurement),
     let measured = measure(&plant, &run, drive.maker(arguments.model(), set_point));
     progress.finish_and_clear();
     let mut measured = measured?;
-    if let (Some(_), Some(mean)) = (run.aim, measured.figures.mean_torque_nm) {
+    if run.load_step.is_some() {
+        measured.figures = FiguresOfMerit::default();
+    } else if let (Some(_), Some(mean)) = (run.aim, measured.figures.mean_torque_nm) {
         // The reference is the speed loop's current, not its limit.
         run.current = run_of(&drive.spec, run.omega_m, mean).current;
         measured = Measurement::of(measured.traces, measured.tripped, &run);
@@ -135,6 +152,21 @@ fn aim(
     }
     let speeds = (options.start_rpm() * TAU / 60.0, rpm * TAU / 60.0);
     Ok(Some(Aim::of(&speed, &mechanics, torque, speeds)))
+}
+
+/// The step of the load, on top of what opposes the motion before.
+fn load_step(options: &Options, drive: &Prepared) -> Result<Option<LoadStep>, Failure> {
+    let (Some(step), Some(speed)) = (options.load_step, drive.spec.controller.common().speed)
+    else {
+        return Ok(None);
+    };
+    if step < 0.0 {
+        return Err(Failure::Argument(format!(
+            "--load-step {step}: it opposes the motion as --load does, so give it without a sign"
+        )));
+    }
+    let load = options.run.plant.load.unwrap_or(0.0) + step;
+    Ok(Some(LoadStep::to(load, &speed)))
 }
 
 /// Most control periods of a run, with settling: minutes of computing time.
@@ -213,22 +245,16 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         torque_nm: options.run.torque(&drive),
         tripped: measured.tripped,
         speed: deviations.inertia.map(|_| {
-            let least_rpm = drive.spec.inverter.minimum_speed * 60.0 / TAU;
-            let least_rpm = least_rpm.max(options.start_rpm().abs());
-            Speed::of(&measured, options.speed_set, least_rpm)
+            let least_rpm = options.least_rpm(&drive);
+            Speed::of(&measured, &run, options.speed_set, least_rpm)
         }),
+        response: options
+            .speed_set
+            .and_then(|set| LoadResponse::of(&measured, &run, set, options.least_rpm(&drive))),
         figures: measured.figures,
     };
-    if let Some(Speed {
-        set_rpm: Some(set),
-        settled: Some(false),
-        ..
-    }) = outcome.speed
-    {
-        warn(&format!(
-            "--speed-set {set}: the speed has not settled within {:.0} % of that, or of the start's if it is faster",
-            100.0 * SETTLED
-        ));
+    if let Some(text) = not_reached(&outcome) {
+        warn(&text);
     }
     let plant = deviations.plant(&drive)?;
     if let Some(text) = beyond_drive(&drive, &plant, options, &outcome) {
@@ -240,6 +266,26 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_table(&outcome, drive.spec.controller.common().reference)?;
     }
     Failure::of_trip(outcome.tripped)
+}
+
+/// What is told of a speed that has not settled, or not come back after a load step.
+fn not_reached(outcome: &Outcome) -> Option<String> {
+    let speed = outcome.speed?;
+    let (set, last) = (speed.set_rpm?, speed.final_rpm?);
+    let remedy = "; raise --torque, up to what `max_current` allows, or lower the load";
+    if speed.settled == Some(false) {
+        return Some(format!(
+            "--speed-set {set}: the speed has not settled within {:.0} % of that, or of the start's if it is faster; it is {} rpm at the end{remedy}",
+            100.0 * SETTLED,
+            significant(last, 4)
+        ));
+    }
+    outcome.response?.recovery_ms.is_none().then(|| {
+        format!(
+            "--load-step: the speed has not come back to {set} rpm; it is {} rpm at the end{remedy}",
+            significant(last, 4)
+        )
+    })
 }
 
 /// A demand over the envelope's torque from which on it is beyond the envelope.
@@ -353,6 +399,7 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
         });
         let settled = match speed.settled {
             None => "",
+            Some(true) if outcome.response.is_some() => ", settled before the step",
             Some(true) => ", settled",
             Some(false) => ", NOT settled",
         };
@@ -362,10 +409,30 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
             significant(speed.final_rpm, 5)
         ))?;
     }
+    if let Some(response) = outcome.response {
+        return print_text(&of_load_step(&response));
+    }
     let mut table = Table::listed(["figure of merit"], ["value", "unit"]);
     let figures = &outcome.figures;
     for (name, value, unit) in figures.rows_of(reference) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
     cli::print_table(&table)
+}
+
+fn of_load_step(response: &LoadResponse) -> String {
+    let percent = 100.0 * SETTLED;
+    let recovery = match response.recovery_ms {
+        None => format!("NOT back within {percent:.0} %"),
+        Some(0.0) => format!("always within {percent:.0} %"),
+        Some(time) => format!(
+            "back within {percent:.0} % after {} ms",
+            significant(time, 3)
+        ),
+    };
+    format!(
+        "load step: {} rpm below the set-point at most, then {} rpm above it; {recovery}",
+        significant(response.dip_rpm, 3),
+        significant(response.overshoot_rpm, 3)
+    )
 }

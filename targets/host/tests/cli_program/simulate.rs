@@ -120,7 +120,7 @@ fn csv_has_the_documented_columns_and_a_row_per_period() {
     assert_eq!(
         lines.next(),
         Some(
-            "t,theta_e,sector,hall,comm,ia,ib,ic,ialpha_ref,ibeta_ref,torque_mean,valpha_mean,vbeta_mean"
+            "t,theta_e,rpm,sector,hall,comm,ia,ib,ic,ialpha_ref,ibeta_ref,torque_mean,valpha_mean,vbeta_mean"
         )
     );
     // Six electrical turns at 1500 rpm and four pole pairs are 60 ms, 1200 periods.
@@ -390,6 +390,47 @@ fn a_free_shaft_tells_the_speed_that_it_reached() {
     );
     let said = run(["simulate", PAPER].iter().chain(&free));
     assert!(said.stdout.contains("free shaft: 719"), "{}", said.stdout);
+}
+
+#[test]
+fn a_load_step_has_its_dip_overshoot_and_recovery() {
+    let asked = |load: &str| {
+        let drive = ["hurst-long", "--controller", "pdcc:speed_loop=on"];
+        let speed = ["--speed-set", "1500", "--start-angle", "0.1"];
+        let step = ["--inertia", "7.06e-6", "--load-step", load];
+        let all = drive.into_iter().chain(speed).chain(step);
+        all.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let simulated = |load: &str, more: &[&str]| {
+        let asked = asked(load);
+        let fixed = ["simulate"]
+            .into_iter()
+            .chain(asked.iter().map(String::as_str));
+        run(fixed.chain(more.iter().copied()))
+    };
+    let [small, large] = ["0.005", "0.01"].map(|load| simulated(load, &["--json"]).json());
+    for result in [&small, &large] {
+        assert_eq!(result["settled"], true, "{result}");
+        assert!(number(result, "recovery_ms") > 0.0, "{result}");
+        assert_eq!(result["mean_torque_nm"], Value::Null, "{result}");
+    }
+    let ratio = number(&large, "dip_rpm") / number(&small, "dip_rpm");
+    assert!((1.5..2.5).contains(&ratio), "{small} {large}");
+    let said = simulated("0.01", &[]);
+    assert!(
+        said.stdout
+            .contains(", settled before the step\nload step: "),
+        "{said:?}"
+    );
+    assert!(said.stdout.contains("; back within 2 % after "), "{said:?}");
+    assert_eq!(said.stderr, "", "{said:?}");
+    // More than the motor makes.
+    let said = simulated("0.4", &[]);
+    assert!(said.stdout.contains("; NOT back within 2 %"), "{said:?}");
+    let warning = "--load-step: the speed has not come back to 1500 rpm; it is 0 rpm at the end";
+    assert!(said.stderr.contains(warning), "{said:?}");
+    let negative = simulated("-0.1", &[]);
+    assert_eq!(negative.code, 2, "{negative:?}");
 }
 
 #[test]

@@ -46,6 +46,17 @@ pub struct RunOptions {
     pub reach: Option<u16>,
     /// Target of a speed loop; `None` if the speed is held or free.
     pub aim: Option<Aim>,
+    /// A further load from the middle of the measured window on; it needs a free shaft.
+    pub load_step: Option<LoadStep>,
+}
+
+/// A load that a free shaft bears from the middle of the measured window on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadStep {
+    /// The whole load torque from then on, Nm.
+    pub load: f64,
+    /// Time for which it is watched, seconds.
+    pub watched: f64,
 }
 
 /// Speed to be reached before the measurement.
@@ -70,7 +81,13 @@ impl RunOptions {
             ramp: 0.0,
             reach: None,
             aim: None,
+            load_step: None,
         }
+    }
+
+    /// Of so many measured periods those before the load step; all without one.
+    pub fn before_step(&self, measured: usize) -> usize {
+        self.load_step.map_or(measured, |_| measured / 2)
     }
 
     /// Control periods of settling and of measurement for a motor.
@@ -85,9 +102,11 @@ impl RunOptions {
             (self.wait + SETTLING, STANDSTILL)
         };
         let settling = self.aim.map_or(settling, |aim| settling.max(aim.within));
+        let watched = self.load_step.map_or(0.0, |step| 2.0 * step.watched);
+        let watched = watched.min(MOST_RECORDED as f64 * params.t_s);
         (
             ((self.ramp + settling) / params.t_s).ceil() as usize,
-            ((measured / params.t_s).round() as usize).max(1),
+            ((measured.max(watched) / params.t_s).round() as usize).max(1),
         )
     }
 }
@@ -116,7 +135,12 @@ fn run_start<C: CurrentLoop>(
     let mut closed = ClosedLoop::new(plant, controller, options.delay);
     closed.run(settling, &mut ());
     let mut trace = Trace::of_run(closed.plant(), options, measured);
-    closed.run(measured, &mut trace);
+    let before = options.before_step(measured);
+    closed.run(before, &mut trace);
+    if let Some(step) = options.load_step {
+        closed.plant_mut().set_load(step.load);
+        closed.run(measured - before, &mut trace);
+    }
     Ok((trace, closed.tripped()))
 }
 

@@ -27,10 +27,10 @@ pub use limit::{
     Held, LimitOptions, LimitOutcome, Side, SpeedLimit, TOLERANCE, speed_limit, speed_limit_knowing,
 };
 pub use measure::{
-    Aim, MOST_RECORDED, Measurement, RunOptions, STARTS, mean_torque, measure, record,
+    Aim, LoadStep, MOST_RECORDED, Measurement, RunOptions, STARTS, mean_torque, measure, record,
 };
 pub use percent::percent;
-pub use speed::{SETTLED, Speed};
+pub use speed::{LoadResponse, SETTLED, Speed};
 pub use swing::voltage_swing;
 pub use trace::{PeriodRow, Trace, hexagon, quasi_square};
 pub use trip::{Cause, Trip};

@@ -209,8 +209,8 @@ impl Trace {
             .collect()
     }
 
-    /// Writes the period rows as CSV with the columns t, theta_e, sector, hall, comm, ia, ib, ic,
-    /// ialpha_ref, ibeta_ref, torque_mean, valpha_mean, vbeta_mean; SI units. References are the
+    /// Writes the period rows as CSV with the columns t, theta_e, rpm, sector, hall, comm, ia, ib, ic,
+    /// ialpha_ref, ibeta_ref, torque_mean, valpha_mean, vbeta_mean; SI units but for rpm, the mechanical speed. References are the
     /// quasi-square of the true sector with amplitude `current`; comm as [`Self::commutating`].
     ///
     /// # Errors
@@ -228,6 +228,7 @@ impl Trace {
             writer.serialize(CsvRow {
                 t: row.t,
                 theta_e: row.theta_e,
+                rpm: row.omega_m * 60.0 / TAU,
                 sector: row.sector,
                 hall: row.hall,
                 comm: u8::from(commutating[k * self.bins_per_period]),
@@ -266,6 +267,7 @@ impl Trace {
 struct CsvRow {
     t: f64,
     theta_e: f64,
+    rpm: f64,
     sector: usize,
     hall: u8,
     comm: u8,
@@ -457,7 +459,7 @@ mod tests {
         assert_eq!(
             lines.next(),
             Some(
-                "t,theta_e,sector,hall,comm,ia,ib,ic,ialpha_ref,ibeta_ref,torque_mean,valpha_mean,vbeta_mean"
+                "t,theta_e,rpm,sector,hall,comm,ia,ib,ic,ialpha_ref,ibeta_ref,torque_mean,valpha_mean,vbeta_mean"
             )
         );
         assert_eq!(lines.count(), 7);
