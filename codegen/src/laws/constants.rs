@@ -6,7 +6,7 @@ use super::{Description, Period};
 use crate::design::vectors::{THREE_PHASE, TWO_PHASE, leg_vector, svm_coefficients};
 use crate::diagnostics::{engineering, percent, significant};
 use crate::interface::{PublicConstant, PublicValue};
-use crate::spec::{InverterSpec, RotorSensing, Spec};
+use crate::spec::{InverterSpec, Reference, RotorSensing, Spec};
 use nalgebra::Vector2;
 
 /// All constants; `accuracy`: the proven error bounds.
@@ -83,7 +83,14 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             "TORQUE_CONSTANT",
             spec.torque_constant(),
             "Nm/A",
-            "Torque per ampere of set-point, k_t",
+            match spec.controller.common().reference {
+                Reference::QuasiSquare => {
+                    "Torque per ampere of set-point, the plateau of a quasi-square current, k_t"
+                }
+                Reference::Proportional => {
+                    "Torque per ampere of set-point, the current of a phase where its EMF peaks, k_t"
+                }
+            },
         ),
         integer(
             "START_SPEED_RPM",

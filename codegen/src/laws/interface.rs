@@ -221,6 +221,10 @@ fn motor_and_inverter(spec: &Spec) -> Vec<String> {
             engineering(inverter.trip_current, "A"),
         ),
     ];
+    lines.push(format!(
+        "By this EMF constant the motor turns at {} without load on that bus, in block commutation.",
+        rpm(motor.no_load_speed(inverter.v_bus)),
+    ));
     lines.push(current_sensors(spec));
     if inverter.pwm_per_control > 1 {
         lines.push(format!(

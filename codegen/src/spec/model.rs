@@ -200,6 +200,11 @@ impl MotorSpec {
             .unwrap_or(self.rated_current * self.rated_torque_constant())
     }
 
+    /// Speed without load on a bus of `volts`, in block commutation, mechanical rad/s.
+    pub fn no_load_speed(&self, volts: f64) -> f64 {
+        volts / (self.emf_constant * self.emf_shape.quasi_square_factor())
+    }
+
     /// Whether all Hall sensors are in their places.
     pub fn has_even_halls(&self) -> bool {
         self.hall_angles == HALL_ANGLES
