@@ -24,6 +24,9 @@ pub struct Plan {
     /// A board in place of the motor file's.
     on_board: PlantOptions,
     motor: SelectedMotor,
+    /// The motor file's own drive, with its speed loop.
+    whole: Prepared,
+    /// What is measured of it: its current loop.
     own: Prepared,
     rows: Vec<Planned>,
     notes: Vec<String>,
@@ -39,6 +42,7 @@ impl Plan {
     pub fn of(given: &str, board: Option<&str>) -> Result<Self, LabError> {
         let on_board = PlantOptions::on_board(board);
         let motor = SelectedMotor::find(given, &on_board)?;
+        let whole = motor.prepare(None)?;
         let own = motor.prepare_for_torque(None)?;
         let is_paper = motor.source.name == PAPER_MOTOR;
         let mut notes = Vec::new();
@@ -46,10 +50,12 @@ impl Plan {
         let mut rows = plan(&motor, planned, [is_paper, false], &mut notes)?;
         rows.insert(0, of_file(&own));
         notes.extend(rows.iter().filter_map(limited));
+        notes.extend(own.regulates_speed.then(|| NO_SPEED_LOOP.to_owned()));
         Ok(Self {
             given: given.to_owned(),
             on_board,
             motor,
+            whole,
             own,
             rows,
             notes,
@@ -72,6 +78,7 @@ impl Plan {
             given: PAPER_MOTOR.to_owned(),
             on_board: PlantOptions::default(),
             motor,
+            whole: own.clone(),
             own,
             rows,
             notes,
@@ -93,7 +100,7 @@ impl Plan {
             .ok();
         let data = Results {
             verification: Some(verification(&checked)),
-            links: links(&self.motor, &self.own.rust()),
+            links: links(&self.motor, &self.whole.rust()),
             errors,
             robustness,
             ..self.results(variants)?
@@ -114,8 +121,10 @@ impl Plan {
         progress.begin("simulating", self.rows.len() as u64);
         // Code and data sheet are those of the motor file's own controller.
         let shown = (!self.is_expected).then(|| own_row().label);
+        let whole = &self.whole;
         let variants = self.rows.par_iter().map(|row| {
-            let variant = row.run(shown == Some(row.row.label));
+            let is_shown = shown == Some(row.row.label);
+            let variant = row.run(is_shown.then_some(whole));
             progress.advance(1);
             variant
         });
@@ -168,10 +177,12 @@ impl Plan {
         }
     }
 
-    /// Compares every drive of the table, the motor file's own among them, bit for bit.
+    /// Compares every drive of the table and the motor file's own, bit for bit.
     fn verify(&self, progress: &dyn Progress) -> Vec<Checked> {
         let rows = self.rows.iter().flat_map(|row| &row.drives);
-        let drives: Vec<Prepared> = rows.map(|(_, drive)| drive).cloned().collect();
+        let rows = rows.map(|(_, drive)| drive);
+        let whole = self.own.regulates_speed.then_some(&self.whole);
+        let drives: Vec<Prepared> = rows.chain(whole).cloned().collect();
         verify_drives(&drives, VERIFY_STEPS, 1, progress)
     }
 }
@@ -294,6 +305,10 @@ fn plan(
     Ok(planned)
 }
 
+/// What is left out of a drive with a speed loop.
+const NO_SPEED_LOOP: &str = "The speed loop is left out of every row: all are measured at a torque that is set. Code and data sheet are those of \
+     the whole drive.";
+
 /// What a board without an edge timer has not.
 const NO_TIMER: &str = "Every row sees Hall edges at samples alone, half a period late on the mean: the motor file has no \
      `hall_timer_clock`, so that no row is repeated with captured edges.";
@@ -388,8 +403,8 @@ const PAPER_NOTES: [&str; 5] = [
 
 #[cfg(test)]
 mod tests {
-    use super::plan;
-    use crate::engine::{PlantOptions, SelectedMotor};
+    use super::{NO_SPEED_LOOP, Plan, plan};
+    use crate::engine::{PlantOptions, Prepared, SelectedMotor};
     use crate::results::unstated::stating;
     use crate::results::{Capture, PAPER_MOTOR, design_table};
     use hexagen_codegen::spec::apply_variant;
@@ -410,7 +425,7 @@ mod tests {
             let captures: Vec<Capture> = row.drives.iter().map(|(capture, _)| *capture).collect();
             assert_eq!(captures, [Capture::Sampled], "{}", row.row.label);
         }
-        let run = planned[0].run(false).expect("runs").runs;
+        let run = planned[0].run(None).expect("runs").runs;
         assert_eq!(run.len(), 2);
         assert_eq!(notes, [super::NO_TIMER]);
     }
@@ -433,6 +448,32 @@ mod tests {
                 assert!((0.9..1.1).contains(&(torque / demand)), "{name}: {torque}");
             }
         }
+    }
+
+    #[test]
+    fn a_drive_with_a_speed_loop_is_measured_without_and_shown_with_it() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("regulated.toml");
+        let lines = [
+            ("[motor]\n", "inertia = \"2e-3 kg m2\"\n"),
+            ("[controller]\n", "speed_loop = \"on\"\n"),
+        ];
+        let text = lines
+            .iter()
+            .fold(paper_motor().source.text, |text, (head, line)| {
+                text.replace(head, &format!("{head}{line}"))
+            });
+        std::fs::write(&file, text).expect("is written");
+        let plan = Plan::of(file.to_str().expect("a path"), None).expect("rows");
+        let regulates = |drive: &Prepared| drive.spec.controller.common().speed.is_some();
+        assert!(regulates(&plan.whole));
+        for (_, drive) in plan.rows.iter().flat_map(|row| &row.drives) {
+            assert!(!regulates(drive), "{}", drive.variant);
+        }
+        assert!(plan.notes.iter().any(|note| note == NO_SPEED_LOOP));
+        let shown = plan.rows[0].run(Some(&plan.whole)).expect("runs").generated;
+        let sheet = shown.expect("is shown").data_sheet;
+        assert!(sheet.contains("Speed loop"), "{sheet}");
     }
 
     #[test]

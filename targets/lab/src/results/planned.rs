@@ -79,11 +79,12 @@ impl AtSpeeds {
 }
 
 impl Planned {
-    /// Runs every line of the row at rated torque, and the further contents of the page.
+    /// Runs every line of the row at rated torque, and the further contents of the page. `shown`: the drive whose code
+    /// and data sheet are to be shown beside the row.
     ///
     /// # Errors
     /// A plant parameter out of range.
-    pub fn run(&self, shows_texts: bool) -> Result<Variant, LabError> {
+    pub fn run(&self, shown: Option<&Prepared>) -> Result<Variant, LabError> {
         let measured = self
             .drives
             .par_iter()
@@ -140,7 +141,7 @@ impl Planned {
             same_words,
             signal_errors,
             stability: stability::checked(drive)?,
-            generated: shows_texts.then(|| texts(drive)),
+            generated: shown.map(texts),
         })
     }
 
