@@ -83,14 +83,7 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
             "TORQUE_CONSTANT",
             spec.torque_constant(),
             "Nm/A",
-            match spec.controller.common().reference {
-                Reference::QuasiSquare => {
-                    "Torque per ampere of set-point, the plateau of a quasi-square current, k_t"
-                }
-                Reference::Proportional => {
-                    "Torque per ampere of set-point, the current of a phase where its EMF peaks, k_t"
-                }
-            },
+            about_torque_constant(spec.controller.common().reference),
         ),
         integer(
             "START_SPEED_RPM",
@@ -100,6 +93,17 @@ fn drive_constants(spec: &Spec, start_rpm: i64) -> Vec<PublicConstant> {
         ),
     ]);
     list
+}
+
+fn about_torque_constant(reference: Reference) -> &'static str {
+    match reference {
+        Reference::QuasiSquare => {
+            "Torque per ampere of set-point, the plateau of a quasi-square current, k_t"
+        }
+        Reference::Proportional => {
+            "Torque per ampere of set-point, the current of a phase where its EMF peaks, k_t"
+        }
+    }
 }
 
 fn adc_constants(inverter: &InverterSpec) -> [PublicConstant; 3] {

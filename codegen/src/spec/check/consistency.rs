@@ -38,6 +38,12 @@ struct Claim<'a> {
 }
 
 impl Claim<'_> {
+    /// The values of constants, in words.
+    fn values(&self, constants: &[f64]) -> String {
+        let told = constants.iter().map(|constant| (self.told)(*constant));
+        told.collect::<Vec<_>>().join(" or ")
+    }
+
     fn agrees(&self, phase: f64) -> bool {
         let fits = |factor: &f64| fits(factor * phase, self.constant);
         self.factors.iter().any(fits)
@@ -120,11 +126,7 @@ pub(super) fn check(
     let culprit = misread.filter(of_claim).unwrap_or(culprit);
     let fitting: Vec<(String, String)> = fitting
         .iter()
-        .map(|(other, constants)| {
-            let told = constants.iter().map(|constant| (first.told)(*constant));
-            let told: Vec<String> = told.collect();
-            (other.change.clone(), told.join(" or "))
-        })
+        .map(|(other, constants)| (other.change.clone(), first.values(constants)))
         .collect();
     let expected: Vec<f64> = first.factors.iter().map(|factor| factor * phase).collect();
     errors.push(catalogue::contradiction(&Contradiction {
