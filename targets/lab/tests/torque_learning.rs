@@ -6,7 +6,6 @@ use hexagen_lab::engine::{
     Engine, Model, MotorSource, Prepared, library, plant_of, prepare, run_of,
 };
 use hexagen_lab::plant::{Plant, PlantParams};
-use hexagen_reference::verify::Subject;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -58,28 +57,12 @@ fn drives(variant: &str) -> Vec<Prepared> {
 }
 
 /// The learnt word.
-fn ratio(drive: &Prepared, engine: &Engine<'_>) -> f64 {
+fn ratio(drive: &Prepared, engine: &mut Engine<'_>) -> f64 {
     let names = drive.state_names();
     let place = names.iter().position(|name| *name == "torque_ratio");
     let mut words = vec![0; names.len()];
-    match engine {
-        Engine::Compiled(subject) => subject.0.state_words(&mut words),
-        Engine::Interpreted(subject) => subject.state_words(&mut words),
-        other => panic!("{other:?}"),
-    }
+    engine.subject().expect("a drive").state_words(&mut words);
     f64::from(words[place.expect("it learns")]) / 28_f64.exp2()
-}
-
-/// Control periods between two calls of `set_bus`: well below 100 ms.
-const TELLING: usize = 500;
-
-/// Runs with the bus voltage told as a main program does.
-fn run_told(closed: &mut ClosedLoop<Engine<'_>>, drive: &Prepared, periods: usize) {
-    let counts = drive.bus_counts(drive.spec.inverter.v_bus);
-    for from in (0..periods).step_by(TELLING) {
-        closed.controller().set_bus(counts.expect("a measured bus"));
-        closed.run(TELLING.min(periods - from), &mut ());
-    }
 }
 
 /// Learnt over true constant behind a spell without torque, and the torque over the one asked for then.
@@ -92,15 +75,12 @@ fn figures(drive: &Prepared, params: &PlantParams, [share, k_b]: [f64; 2]) -> [f
     let plant = Plant::new(params.clone(), 0.3, omega).expect("a plant");
     let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
     let mut closed = ClosedLoop::new(plant, engine, run.delay);
-    run_told(&mut closed, drive, LEARNING + (20.0 * turn) as usize);
+    closed.run(LEARNING + (20.0 * turn) as usize, &mut ());
     let learnt = ratio(drive, closed.controller());
     let bits = (demand * 65_536.0).round() as i32;
-    match closed.controller() {
-        Engine::Compiled(subject) => subject.0.set_torque(bits),
-        Engine::Interpreted(subject) => subject.set_torque(bits),
-        other => panic!("{other:?}"),
-    }
-    run_told(&mut closed, drive, (20.0 * turn) as usize + 200);
+    let subject = closed.controller().subject();
+    subject.expect("a drive").set_torque(bits);
+    closed.run((20.0 * turn) as usize + 200, &mut ());
     let periods = (6.0 * turn).round() as usize;
     let mut trace = Trace::of_run(closed.plant(), &run, periods);
     closed.run(periods, &mut trace);
@@ -185,22 +165,18 @@ fn nothing_is_learnt_under_load_and_a_reset_forgets() {
         let plant = Plant::new(plant_of(spec).scaled(2.0, 1.0, 0.8), 0.3, omega).expect("a plant");
         let engine = drive.engine(Model::Fixed, drive.set_point(demand));
         let mut closed = ClosedLoop::new(plant, engine, run_of(spec, omega, demand).delay);
-        run_told(&mut closed, drive, LEARNING);
+        closed.run(LEARNING, &mut ());
         let before = ratio(drive, closed.controller());
         assert!((before - 1.0).abs() < MOST, "{}: {before}", drive.motor);
         closed.controller().set_current(0.0);
-        run_told(&mut closed, drive, LEARNING);
+        closed.run(LEARNING, &mut ());
         let learnt = ratio(drive, closed.controller());
         assert!(
             (learnt * 0.8 - 1.0).abs() < MOST,
             "{}: {learnt}",
             drive.motor
         );
-        match closed.controller() {
-            Engine::Compiled(subject) => subject.0.reset(),
-            Engine::Interpreted(subject) => subject.reset(),
-            other => panic!("{other:?}"),
-        }
+        closed.controller().subject().expect("a drive").reset();
         let forgotten = ratio(drive, closed.controller());
         assert!(
             (forgotten - 1.0).abs() < f64::EPSILON,
@@ -219,14 +195,19 @@ fn nothing_is_learnt_with_an_old_bus_voltage() {
         let plant = Plant::new(plant_of(spec).scaled(1.0, 1.0, 0.8), 0.3, omega).expect("a plant");
         let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
         let mut closed = ClosedLoop::new(plant, engine, run_of(spec, omega, 0.0).delay);
-        // The voltage was told once, at the begin.
+        // The voltage is told once, at the begin.
+        closed.run(1, &mut ());
+        closed.controller().stop_telling_bus();
         let fresh = (0.1 / spec.inverter.t_s).ceil() as usize;
         closed.run(fresh + 2, &mut ());
         let old = ratio(drive, closed.controller());
         closed.run(LEARNING, &mut ());
         let held = ratio(drive, closed.controller());
         assert!((held - old).abs() < f64::EPSILON, "{}", drive.motor);
-        run_told(&mut closed, drive, LEARNING);
+        let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
+        let plant = closed.plant().clone();
+        let mut closed = ClosedLoop::new(plant, engine, run_of(spec, omega, 0.0).delay);
+        closed.run(LEARNING, &mut ());
         let learnt = ratio(drive, closed.controller());
         moved += u32::from(learnt > old);
     }
@@ -246,7 +227,7 @@ fn nothing_is_learnt_where_the_emf_exceeds_the_bus() {
     let plant = Plant::new(plant_of(spec).scaled(2.0, 1.0, 1.0), 0.3, omega).expect("a plant");
     let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
     let mut closed = ClosedLoop::new(plant, engine, run_of(spec, omega, 0.0).delay);
-    run_told(&mut closed, drive, LEARNING);
+    closed.run(LEARNING, &mut ());
     let ratio = ratio(drive, closed.controller());
     assert!((ratio - 1.0).abs() < MOST, "{ratio}");
 }

@@ -72,9 +72,27 @@ impl EngineKind {
     }
 }
 
-/// A controller for the loop, by any engine.
+/// A controller for the loop, by any engine. A measured bus voltage is told to it again and again, as a main
+/// program does.
 #[derive(Debug)]
-pub enum Engine<'g> {
+pub struct Engine<'g> {
+    drive: AnyDrive<'g>,
+    bus: Option<ToldBus>,
+}
+
+/// A bus voltage that is told before it is old.
+#[derive(Clone, Copy, Debug)]
+struct ToldBus {
+    counts: u16,
+    /// Control periods between two calls.
+    every: u32,
+    /// Control periods to the next call.
+    left: u32,
+}
+
+/// A drive or a model of it.
+#[derive(Debug)]
+enum AnyDrive<'g> {
     /// Emitted code.
     Compiled(AnySubject),
     /// The verified graph, interpreted.
@@ -86,35 +104,67 @@ pub enum Engine<'g> {
 }
 
 impl Engine<'_> {
+    /// The fixed-point program, for calls other than those here; `None` of a model.
+    pub fn subject(&mut self) -> Option<&mut dyn Subject> {
+        match &mut self.drive {
+            AnyDrive::Compiled(drive) => Some(drive),
+            AnyDrive::Interpreted(drive) => Some(&mut **drive),
+            AnyDrive::BitTrue(_) | AnyDrive::Ideal(_) => None,
+        }
+    }
+
     /// Sets the set-point, in amperes: exact for the ideal model, else the nearest word.
     pub fn set_current(&mut self, amperes: f64) {
         let bits = (amperes * f64::from(1 << 16)).round() as i32;
-        match self {
-            Self::Compiled(drive) => drive.set_current(bits),
-            Self::Interpreted(drive) => drive.set_current(bits),
-            Self::BitTrue(model) => model.set_current(bits),
-            Self::Ideal(model) => model.set_current_amps(amperes),
+        match &mut self.drive {
+            AnyDrive::Compiled(drive) => drive.set_current(bits),
+            AnyDrive::Interpreted(drive) => drive.set_current(bits),
+            AnyDrive::BitTrue(model) => model.set_current(bits),
+            AnyDrive::Ideal(model) => model.set_current_amps(amperes),
         }
     }
 
     /// Sets the speed, in rpm; drives without a speed loop ignore it.
     pub fn set_speed(&mut self, rpm: f64) {
         let bits = (rpm * f64::from(1 << 16)).round() as i32;
-        match self {
-            Self::Compiled(drive) => drive.set_speed(bits),
-            Self::Interpreted(drive) => drive.set_speed(bits),
-            Self::BitTrue(model) => model.set_speed(bits),
-            Self::Ideal(model) => model.set_speed(bits),
+        match &mut self.drive {
+            AnyDrive::Compiled(drive) => drive.set_speed(bits),
+            AnyDrive::Interpreted(drive) => drive.set_speed(bits),
+            AnyDrive::BitTrue(model) => model.set_speed(bits),
+            AnyDrive::Ideal(model) => model.set_speed(bits),
         }
     }
 
-    /// Sets the measured bus voltage as an ADC count; drives with a fixed bus ignore it.
+    /// Sets the measured bus voltage as an ADC count, which is told from the next step on; drives with a fixed bus
+    /// ignore it.
     pub fn set_bus(&mut self, counts: u16) {
-        match self {
-            Self::Compiled(drive) => drive.set_bus(counts),
-            Self::Interpreted(drive) => drive.set_bus(counts),
-            Self::BitTrue(model) => model.set_bus(counts),
-            Self::Ideal(model) => model.set_bus(counts),
+        if let Some(bus) = &mut self.bus {
+            (bus.counts, bus.left) = (counts, 0);
+        }
+    }
+
+    /// Tells the bus voltage no longer.
+    pub fn stop_telling_bus(&mut self) {
+        self.bus = None;
+    }
+
+    /// Tells the bus voltage where that is due.
+    #[inline]
+    fn tell_bus(&mut self) {
+        let Some(bus) = &mut self.bus else {
+            return;
+        };
+        if bus.left > 0 {
+            bus.left -= 1;
+            return;
+        }
+        bus.left = bus.every - 1;
+        let counts = bus.counts;
+        match &mut self.drive {
+            AnyDrive::Compiled(drive) => drive.set_bus(counts),
+            AnyDrive::Interpreted(drive) => drive.set_bus(counts),
+            AnyDrive::BitTrue(model) => model.set_bus(counts),
+            AnyDrive::Ideal(model) => model.set_bus(counts),
         }
     }
 }
@@ -122,21 +172,22 @@ impl Engine<'_> {
 impl CurrentLoop for Engine<'_> {
     #[inline]
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
-        match self {
-            Self::Compiled(drive) => drive.step(sample),
-            Self::Interpreted(drive) => drive.step(sample),
-            Self::BitTrue(model) => model.step(sample),
-            Self::Ideal(model) => model.step_legs(sample),
+        self.tell_bus();
+        match &mut self.drive {
+            AnyDrive::Compiled(drive) => drive.step(sample),
+            AnyDrive::Interpreted(drive) => drive.step(sample),
+            AnyDrive::BitTrue(model) => model.step(sample),
+            AnyDrive::Ideal(model) => model.step_legs(sample),
         }
     }
 
     #[inline]
     fn fault(&self) -> Option<Fault> {
-        match self {
-            Self::Compiled(drive) => drive.fault(),
-            Self::Interpreted(drive) => drive.fault(),
-            Self::BitTrue(model) => model.fault(),
-            Self::Ideal(model) => model.fault(),
+        match &self.drive {
+            AnyDrive::Compiled(drive) => drive.fault(),
+            AnyDrive::Interpreted(drive) => drive.fault(),
+            AnyDrive::BitTrue(model) => model.fault(),
+            AnyDrive::Ideal(model) => model.fault(),
         }
     }
 }

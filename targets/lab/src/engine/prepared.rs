@@ -1,8 +1,8 @@
 //! A drive taken through the generator, with its models.
 
 use super::{
-    AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, Verifier, built_in, plant_of,
-    reach_of, run_of,
+    AnyDrive, AnySubject, BuiltIn, Engine, EngineKind, Model, MotorSource, ToldBus, Verifier,
+    built_in, plant_of, reach_of, run_of,
 };
 use crate::closed_loop::{Measurement, measure};
 use crate::plant::{PlantError, PlantParams, Truth};
@@ -162,17 +162,25 @@ impl Prepared {
 
     /// A controller with its set-point.
     pub fn engine(&self, model: Model, set_point: SetPoint) -> Engine<'_> {
-        let mut engine = match model {
+        let drive = match model {
             Model::Fixed => match self.compiled() {
-                Some(drive) => Engine::Compiled(drive),
-                None => Engine::Interpreted(Box::new(self.interpreted())),
+                Some(drive) => AnyDrive::Compiled(drive),
+                None => AnyDrive::Interpreted(Box::new(self.interpreted())),
             },
-            Model::BitTrue => Engine::BitTrue(Box::new(self.bit_true())),
-            Model::Ideal => Engine::Ideal(Box::new(self.ideal())),
+            Model::BitTrue => AnyDrive::BitTrue(Box::new(self.bit_true())),
+            Model::Ideal => AnyDrive::Ideal(Box::new(self.ideal())),
         };
-        if let Some(counts) = self.bus_counts(set_point.v_bus) {
-            engine.set_bus(counts);
-        }
+        let counts = self.bus_counts(set_point.v_bus);
+        let fresh = self.generated.interface.bus_periods;
+        let mut engine = Engine {
+            drive,
+            bus: counts.zip(fresh).map(|(counts, fresh)| ToldBus {
+                counts,
+                // Twice before it is old.
+                every: (fresh.unsigned_abs() / 2).max(1),
+                left: 0,
+            }),
+        };
         engine.set_current(set_point.current);
         if let Some(rpm) = set_point.rpm {
             engine.set_speed(rpm);

@@ -115,7 +115,6 @@ impl<'d> Bench<'d> {
         let controller = Watched {
             engine: drive.engine(self.model, set_point),
             signals: Signals::new(&self.plant, place as u64),
-            bus: drive.bus_counts(self.plant.v_bus),
             lost: 0,
             last: Legs::OFF,
         };
@@ -165,7 +164,11 @@ impl<'d> Bench<'d> {
             Defect::Bus { factor, is_told } => {
                 closed.plant_mut().change(|plant| plant.v_bus *= factor)?;
                 let v_bus = closed.plant().params().v_bus;
-                closed.controller().bus = self.drive.bus_counts(v_bus).filter(|_| is_told);
+                let engine = &mut closed.controller().engine;
+                match self.drive.bus_counts(v_bus).filter(|_| is_told) {
+                    Some(counts) => engine.set_bus(counts),
+                    None => engine.stop_telling_bus(),
+                }
             }
             Defect::Shaft { factor } => {
                 let omega_m = closed.plant().truth().omega_m;
@@ -196,8 +199,6 @@ impl<'d> Bench<'d> {
 struct Watched<'g> {
     engine: Engine<'g>,
     signals: Signals,
-    /// The count of a measured bus; `None` if nobody tells it.
-    bus: Option<u16>,
     /// Periods without an interrupt that are to come.
     lost: usize,
     /// The last command.
@@ -210,9 +211,6 @@ impl CurrentLoop for Watched<'_> {
         if self.lost > 0 {
             self.lost -= 1;
             return self.last;
-        }
-        if let Some(counts) = self.bus {
-            self.engine.set_bus(counts);
         }
         self.last = self.engine.step(&sample, truth);
         self.last
