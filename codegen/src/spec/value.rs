@@ -234,6 +234,9 @@ fn read_unit(
     if field.name == "poles" && symbol.contains("pair") {
         return Err(catalogue::pairs_of_poles(at, &given(unknown), digits));
     }
+    if field.name == "pole_pairs" && symbol.contains("pole") && !symbol.contains("pair") {
+        return Err(catalogue::poles_of_pairs(at, &given(unknown), digits));
+    }
     if let Some(readings) = Unit::readings(&written(unknown)) {
         return Err(catalogue::ambiguous_unit(
             at,

@@ -264,6 +264,13 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
                 &["test", "--package", "hexagen-lab", "--test", "defaults"],
             )
         },
+        Step {
+            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
+            ..step(
+                "regret of the rule over random motors",
+                &["test", "--package", "hexagen-lab", "--test", "regret"],
+            )
+        },
         step("pages of all motors", &pages),
         step(
             "pairs of disturbances",

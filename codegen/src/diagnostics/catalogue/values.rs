@@ -176,6 +176,18 @@ pub fn pairs_of_poles(at: &Location, given: &str, pairs: &str) -> Diagnostic {
     Diagnostic::new(Code::UnwantedUnit, at, message)
 }
 
+/// Poles in place of pole pairs.
+pub fn poles_of_pairs(at: &Location, given: &str, poles: &str) -> Diagnostic {
+    let pairs = poles.parse::<u32>().ok();
+    let pairs = pairs.filter(|poles| poles.is_multiple_of(2));
+    let pairs = pairs.map(|poles| format!(" or `pole_pairs: {}`", poles / 2));
+    let message = format!(
+        "`pole_pairs`: {given} are not pairs; write `poles: {poles}`{}",
+        pairs.unwrap_or_default()
+    );
+    Diagnostic::new(Code::UnwantedUnit, at, message)
+}
+
 /// A number without unit; `right`: what to give, a clause.
 pub fn missing_unit(at: &Location, field: &str, given: &str, right: &str) -> Diagnostic {
     Diagnostic::new(

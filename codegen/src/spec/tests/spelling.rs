@@ -285,6 +285,27 @@ fn no_remedy_offers_a_basis_that_was_not_named() {
 }
 
 #[test]
+fn poles_are_not_taken_for_pairs_nor_pairs_for_poles() {
+    for (given, expected) in [
+        (
+            "pole_pairs = \"8 poles\"",
+            "8 poles are not pairs; write `poles = 8` or `pole_pairs = 4`",
+        ),
+        (
+            "pole_pairs = \"7 poles\"",
+            "7 poles are not pairs; write `poles = 7`",
+        ),
+        (
+            "poles = \"4 pairs\"",
+            "4 pairs are pairs, half of the poles; write `pole_pairs = 4`",
+        ),
+    ] {
+        let told = changed("pole_pairs = 4", given);
+        assert!(told.ends_with(expected), "{given}: {told}");
+    }
+}
+
+#[test]
 fn nominal_ratings_lead_to_rated_ones() {
     let told = changed("rated_speed = \"2000 rpm\"", "nominal_speed = \"2000 rpm\"");
     let line = told.lines().next().unwrap_or_default();

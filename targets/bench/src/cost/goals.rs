@@ -1,5 +1,5 @@
-//! The goals: the best figures found by editing the emitted text by hand, with the same supervisor,
-//! from function entry to return, for the 660 W motor.
+//! The goals, with the same supervisor, from function entry to return: of default drives 330 instructions on the
+//! normal path; of the others the best figures found by editing the emitted text by hand, for the 660 W motor.
 
 use crate::targets::Target;
 use hexagen_lab::counted::Figures;
@@ -20,6 +20,9 @@ pub struct Goal {
 /// The goals of a target, by symbol of the step function.
 fn goals(target: Target) -> Vec<(&'static str, Goal)> {
     const PDCC: &str = "step_trivedi_keshri_660w_pdcc";
+    const TEKNIC: &str = "step_teknic_m2310p_pdcc";
+    const MINI_CHEETAH: &str = "step_mit_mini_cheetah_pdcc";
+    const HOVERBOARD: &str = "step_hoverboard_hub_pdcc";
     const PDCC_QUASI_SQUARE: &str = "step_trivedi_keshri_660w_pdcc_quasi_square";
     const PDCC_KEEP_ANGLE: &str = "step_trivedi_keshri_660w_pdcc_keep_angle";
     const FCS_MPC: &str = "step_trivedi_keshri_660w_fcs_mpc_three_phase";
@@ -33,6 +36,9 @@ fn goals(target: Target) -> Vec<(&'static str, Goal)> {
     match target {
         Target::CortexM4 => vec![
             (PDCC, goal(Some(330), None, None)),
+            (TEKNIC, goal(Some(330), None, None)),
+            (MINI_CHEETAH, goal(Some(330), None, None)),
+            (HOVERBOARD, goal(Some(330), None, None)),
             (PDCC_QUASI_SQUARE, goal(Some(128), Some(441), None)),
             (PDCC_KEEP_ANGLE, goal(Some(71), Some(116), Some(64))),
             (FCS_MPC, goal(Some(70), Some(70), None)),
@@ -137,6 +143,50 @@ mod tests {
             for block in blocks(target) {
                 let added = block.added(&expected.0.steps).expect("is counted");
                 assert!(added <= block.budget, "{}: {added}", block.name);
+            }
+        }
+    }
+
+    /// Steps that miss their goal.
+    const MISSED: [(Target, &str); 10] = [
+        (Target::CortexM4, "step_hoverboard_hub_pdcc"),
+        (
+            Target::CortexM4,
+            "step_trivedi_keshri_660w_pdcc_quasi_square",
+        ),
+        (Target::CortexM4, "step_trivedi_keshri_660w_pdcc_keep_angle"),
+        (
+            Target::CortexM4,
+            "step_trivedi_keshri_660w_fcs_mpc_three_phase",
+        ),
+        (
+            Target::CortexM4,
+            "step_trivedi_keshri_660w_phcc_three_phase",
+        ),
+        (
+            Target::CortexM4,
+            "step_trivedi_keshri_660w_pi_pwm_keep_angle",
+        ),
+        (
+            Target::CortexM0,
+            "step_trivedi_keshri_660w_pdcc_quasi_square",
+        ),
+        (Target::CortexM0, "step_trivedi_keshri_660w_pdcc_keep_angle"),
+        (Target::Riscv32, "step_trivedi_keshri_660w_pdcc_keep_angle"),
+        (
+            Target::Riscv32,
+            "step_trivedi_keshri_660w_pi_pwm_keep_angle",
+        ),
+    ];
+
+    #[test]
+    fn all_goals_are_met_but_those_known_to_be_missed() {
+        for target in Target::ALL {
+            let expected = Expected::read(target).expect("figures");
+            for (symbol, goal) in goals(target) {
+                let figures = &expected.0.steps[symbol];
+                let is_known = MISSED.contains(&(target, symbol));
+                assert_ne!(goal.is_met(figures), is_known, "{symbol}: {figures:?}");
             }
         }
     }

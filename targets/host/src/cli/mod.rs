@@ -2,8 +2,7 @@
 //!
 //! Exit codes: 0: success; 1: a check failed, or the drive tripped; 2: bad input, or the result
 //! cannot be written. Results go to stdout, everything else to stderr. With `--json`, stdout holds
-//! exactly one JSON object, which of bad input has the member `error` alone; but where the command line itself
-//! cannot be read.
+//! exactly one JSON object, which of bad input has the member `error` alone.
 
 mod arguments;
 mod failure;
@@ -15,7 +14,7 @@ pub use arguments::{
     Arguments, Command, DriveArguments, Emit, PlantArguments, RunArguments, Selection, parse_rpm,
     parse_torque,
 };
-pub use failure::Failure;
+pub use failure::{ErrorAlone, Failure};
 pub use output::{
     note, paragraph, print_blocks, print_json, print_table, print_text, tell_warnings, warn,
     wrapped_row, write_file,
@@ -33,13 +32,7 @@ pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         // clap prints help and version this way as well.
-        Err(error) => {
-            let code = u8::try_from(error.exit_code()).unwrap_or(2);
-            return match error.print() {
-                Err(error) if error.kind() != ErrorKind::BrokenPipe => ExitCode::from(2),
-                _ => ExitCode::from(code),
-            };
-        }
+        Err(error) => return unread(&error),
     };
     let report = commands::report::Options {
         motor: None,
@@ -78,5 +71,23 @@ pub fn run() -> ExitCode {
             }
             failure.exit_code()
         }
+    }
+}
+
+/// Prints what is wrong with the command line, or the help that it asks for.
+fn unread(error: &clap::Error) -> ExitCode {
+    let asks_json = std::env::args_os().any(|argument| argument == "--json");
+    if asks_json && error.use_stderr() {
+        let text = error.to_string();
+        let error = text.strip_prefix("error: ").unwrap_or(&text);
+        // Nobody is left to tell that this failed, too.
+        let _ = print_json(&ErrorAlone {
+            error: error.trim_end().to_owned(),
+        });
+    }
+    let code = u8::try_from(error.exit_code()).unwrap_or(2);
+    match error.print() {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => ExitCode::from(2),
+        _ => ExitCode::from(code),
     }
 }

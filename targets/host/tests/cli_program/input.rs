@@ -1,6 +1,6 @@
 //! Wrong input: code 2, nothing on stdout, and a message that says what and where.
 
-use crate::support::{PAPER, run};
+use crate::support::{PAPER, keys, run};
 use serde_json::Value;
 use std::fs;
 
@@ -298,8 +298,37 @@ fn options_out_of_range_or_at_odds_are_told() {
 }
 
 #[test]
+fn a_command_line_that_cannot_be_read_is_an_error_in_json_too() {
+    let help = run(["--help"]).stdout;
+    let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let commands = commands.take_while(|line| !line.is_empty());
+    // Further lines of a description stand further to the right.
+    let names = commands.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    let names: Vec<_> = names.filter(|name| !["", "help"].contains(name)).collect();
+    assert!(names.len() > 15, "{names:?}");
+    for name in names {
+        let refused = run([name, "--no-such-option", "--json"]);
+        assert_eq!(refused.code, 2, "{refused:?}");
+        let told = refused.json_whatever_the_code();
+        let keys = keys(&told);
+        assert_eq!(keys, ["error"], "{name}");
+        let text = told["error"].as_str().expect("a text");
+        assert!(text.contains("--no-such-option"), "{name}: {text}");
+        assert!(refused.stderr.contains("--no-such-option"), "{refused:?}");
+    }
+    assert_eq!(run(["check", "--json", "--help"]).code, 0);
+}
+
+#[test]
 fn options_of_the_report_stand_before_no_command() {
-    run(["--json", "check", PAPER]).assert_bad_input(&["--json"]);
+    let refused = run(["--json", "check", PAPER]);
+    assert_eq!(refused.code, 2, "{refused:?}");
+    let told = refused.json_whatever_the_code();
+    assert!(
+        told["error"]
+            .as_str()
+            .is_some_and(|text| text.contains("--json"))
+    );
     run(["--all", "motors"]).assert_bad_input(&["--all"]);
     let help = run(["--help"]).stdout;
     for option in ["--all", "--json", "--out"] {

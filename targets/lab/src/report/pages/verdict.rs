@@ -177,10 +177,10 @@ fn furthest(data: &Results, own: usize) -> String {
         .filter_map(|variant| Some((limit_of(variant)?, variant)))
         .max_by(|left, right| left.0.total_cmp(&right.0));
     match best {
-        // Within the tolerance of the search the file's own is as good.
+        // Less is within the tolerance of the search.
         Some((limit, variant)) if limit > own_limit + 1.0 => {
             format!("{}: up to {} %", variant.label, number(limit, 0))
         }
-        _ => "none of the other variants holds the torque further".to_owned(),
+        _ => "no other variant holds the torque further by more than 1 point".to_owned(),
     }
 }
