@@ -5,6 +5,7 @@
 
 use crate::closed_loop::Trip;
 use crate::engine::Prepared;
+use crate::motors::greatest_ripple;
 use crate::period::long_period;
 use crate::plant::PlantError;
 use crate::text::significant;
@@ -17,10 +18,6 @@ use serde::Serialize;
 
 /// Speeds of the runs over the rated one.
 const SPEEDS: [f64; 2] = [0.2, 1.0];
-
-/// Ripple that is worth a word, peak to peak in percent of the mean: more than a default drive has at
-/// up to 15 electrical degrees in a period.
-const RIPPLE: f64 = 7.0;
 
 /// Least torque at rated speed of a drive that works, percent; with a limit of the bus current, which is
 /// meant to cut it, half.
@@ -292,7 +289,8 @@ impl Judgement {
         (true, verdict)
     }
 
-    /// The greatest ripple on the nominal bus, percent and in words, if it is worth a word.
+    /// The greatest ripple on the nominal bus, percent and in words, if it is more than that of a default drive with
+    /// edges measured by a timer.
     fn rippling(&self, spec: &Spec) -> Option<(f64, String)> {
         let (nominal, _) = self.runs();
         let ripples = nominal
@@ -309,7 +307,7 @@ impl Judgement {
             "the torque ripples by {} % at {rpm:.0} rpm{finer}",
             significant(ripple, 2)
         );
-        (ripple > RIPPLE).then_some((ripple, text))
+        (ripple > greatest_ripple(spec)).then_some((ripple, text))
     }
 
     /// What is left of the torque at a speed, and what takes the rest.

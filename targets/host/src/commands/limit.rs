@@ -110,7 +110,7 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<Scan, Failure> {
 /// Runs the command.
 ///
 /// # Errors
-/// As [`collect`], or a drive that tripped above its limit.
+/// What cannot be read or simulated, or a drive that tripped above its limit.
 pub fn run(options: &Options) -> Result<(), Failure> {
     let (drive, own, free) = collect(options)?;
     let torque = options.run.torque(&drive);
