@@ -12,6 +12,7 @@ mod explanation;
 mod location;
 mod number;
 mod render;
+mod similar;
 
 pub use code::Code;
 pub use collector::{Collector, Diagnostics};
@@ -22,6 +23,7 @@ pub use number::{
     rpm_at_most, significant,
 };
 pub use render::Anchors;
+pub use similar::{did_you_mean_one, similar};
 
 /// One error or warning: kind, text and the places involved.
 #[derive(Clone, Debug)]

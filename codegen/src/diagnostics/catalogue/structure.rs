@@ -1,7 +1,7 @@
 //! Texts about the structure of a specification: syntax, sections, fields, files.
 
 use super::part::Part;
-use crate::diagnostics::{Code, Diagnostic, Location, enumerated, list};
+use crate::diagnostics::{Code, Diagnostic, Location, did_you_mean_one, enumerated, list, similar};
 
 /// The macro call or the file does not parse; `what` is the parser's message.
 pub fn syntax(at: &Location, what: &str) -> Diagnostic {
@@ -323,10 +323,12 @@ pub fn absolute_motor_file(at: &Location) -> Diagnostic {
 
 /// A board that is neither one of the library nor a TOML file.
 pub fn unknown_board(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
-    let meant = nearest(name, known).map_or_else(
-        || ";".to_owned(),
-        |meant| format!("; did you mean {meant:?}?"),
-    );
+    let quoted = similar(name, known).into_iter();
+    let quoted: Vec<_> = quoted.map(|meant| format!("{meant:?}")).collect();
+    let meant = match did_you_mean_one(&quoted) {
+        none if none.is_empty() => ";".to_owned(),
+        meant => meant,
+    };
     Diagnostic::new(
         Code::UnknownBoard,
         at,

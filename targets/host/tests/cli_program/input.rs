@@ -14,6 +14,7 @@ fn an_unknown_motor_is_told_with_the_nearest_name() {
         "error: no motor `trivedi-keshri`",
         "did you mean `trivedi-keshri-660w`?",
     ]);
+    run(["check", "teknic"]).assert_bad_input(&["did you mean `teknic-m2310p`?"]);
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("hub.toml"), cli_text()).expect("is written");
     let given = folder.path().join("hub");

@@ -1,6 +1,7 @@
 //! Motors by name: a TOML file or a motor of the library.
 
 use super::built_in::{Library, library};
+use hexagen_codegen::diagnostics::{did_you_mean_one, similar};
 use hexagen_codegen::spec::{motor_text, reason_of};
 use std::path::{Path, PathBuf};
 
@@ -19,14 +20,17 @@ pub struct MotorSource {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SourceError {
     /// Neither a file nor a motor of the library.
-    #[error("no motor `{given}`: neither a file that can be read ({reason}) nor a motor of the library{}", nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default())]
+    #[error(
+        "no motor `{given}`: neither a file that can be read ({reason}) nor a motor of the library{}",
+        did_you_mean_one(meant)
+    )]
     Unknown {
         /// As given.
         given: String,
         /// Why it cannot be read as a file.
         reason: String,
-        /// The file that lacks its ending, or the most similar name of the library.
-        nearest: Option<String>,
+        /// The file that lacks its ending, or similar names of the library, quoted.
+        meant: Vec<String>,
     },
     /// A file that is not UTF-8, with a rendered diagnostic.
     #[error("{0}")]
@@ -48,20 +52,17 @@ impl MotorSource {
                     .map_err(|error| SourceError::Encoding(error.to_string()))?,
             }),
             Err(error) => Self::of_library(given.trim_end_matches(".toml")).ok_or_else(|| {
-                let with_ending = Some(format!("{given}.toml"));
-                let with_ending = with_ending.filter(|file| Path::new(file).is_file());
-                let names = library().iter().map(|motor| motor.name);
-                let nearest = || {
-                    names
-                        .map(|name| (strsim::damerau_levenshtein(name, given), name))
-                        .min()
-                        .filter(|(distance, name)| *distance <= name.len() / 2)
-                        .map(|(_, name)| name.to_owned())
+                let with_ending = format!("{given}.toml");
+                let names: Vec<&str> = library().iter().map(|motor| motor.name).collect();
+                let meant = if Path::new(&with_ending).is_file() {
+                    vec![with_ending.as_str()]
+                } else {
+                    similar(given, &names)
                 };
                 SourceError::Unknown {
                     given: given.to_owned(),
                     reason: reason_of(&error),
-                    nearest: with_ending.or_else(nearest),
+                    meant: meant.iter().map(|name| format!("`{name}`")).collect(),
                 }
             }),
         }
