@@ -533,7 +533,7 @@ impl Code {
                 "Look up of which current or voltage the constants are, and write the basis that the message names, if it is that one; else leave out the constant that you trust less.",
             ),
             Self::UnlikelyInertia => say(
-                "The inertia times the rated speed over the rated torque is the time from rest to rated speed. A bare rotor takes some milliseconds, a vehicle some seconds: a time far from both is rather a wrong unit. Data sheets state inertias in g cm2, kg cm2 and kg m2, ten thousand apart; what a gear moves counts by the square of its ratio.",
+                "The inertia times the rated speed over the rated torque is the time from rest to rated speed. A bare rotor takes some milliseconds, a vehicle some seconds: a time far from both is rather a wrong unit. Data sheets state inertias in g cm2, kg cm2 and kg m2, a thousand and ten thousand apart; what a gear moves counts by the square of its ratio.",
                 "bus_voltage = \"48 V\"\ninertia = \"24 kg m2\"",
                 "bus_voltage = \"48 V\"\ninertia = \"24 kg cm2\"",
                 "Look up the unit in the data sheet, and state the inertia of the rotor and of what it moves. If it is right, let the warning be.",

@@ -7,6 +7,7 @@ use super::ast::{Basis, Number, Value};
 use super::field_rule::FieldRule;
 use super::units::{Dimension, Unit, in_letters};
 use crate::diagnostics::{Diagnostic, Location, catalogue};
+use std::slice;
 
 #[derive(Clone, Debug, PartialEq)]
 enum Lexeme {
@@ -286,9 +287,24 @@ fn voltage_over_speed(field: FieldRule, digits: &str, lexemes: &[Lexeme]) -> Opt
         Lexeme::Number(_) => false,
     };
     let place = lexemes.iter().position(is_at)?;
-    let [voltage, speed] = [&lexemes[..place], &lexemes[place + 1..]].map(spelt);
-    let takes_emf = field.dimensions().contains(&Dimension::EmfConstant);
-    takes_emf.then(|| format!("{digits} {voltage}/{speed}"))
+    let (voltage, basis) = lexemes[..place].split_first()?;
+    let [number @ Lexeme::Number(_), unit, further @ ..] = &lexemes[place + 1..] else {
+        return None;
+    };
+    let is_speed = |unit: Unit| unit.dimension == Dimension::Speed;
+    let speed = slice::from_ref(unit);
+    let is_speed = Unit::from_symbol(&spelt(speed)).is_some_and(is_speed);
+    if !is_speed || !field.dimensions().contains(&Dimension::EmfConstant) {
+        return None;
+    }
+    let divided = [slice::from_ref(number), speed].map(spelt).join(" ");
+    let voltage = spelt(slice::from_ref(voltage));
+    let words = [basis, further].map(spelt).join(" ");
+    Some(
+        format!("{digits} {voltage}/{divided} {}", words.trim())
+            .trim_end()
+            .to_owned(),
+    )
 }
 
 /// The unit of a spelling, and the basis that it says. `KV`, in any case, is what makers of

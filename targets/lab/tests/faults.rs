@@ -68,9 +68,10 @@ fn classes_do_what_physics_says() {
     let sound = study
         .of_part(Part::Sound)
         .filter_map(|row| row.ripple_pp_pct);
-    let sound = sound.fold(0.0, f64::max);
+    let sound = sound.reduce(f64::max).expect("a sound drive");
     assert!(
-        open.ripple_pp_pct.is_none_or(|ripple| ripple > 2.0 * sound),
+        open.ripple_pp_pct
+            .is_some_and(|ripple| ripple > 2.0 * sound),
         "{open:?}, {sound}"
     );
     // The supervisor documents that it does not see these: `unseen.rs`.

@@ -204,9 +204,8 @@ fn nothing_is_learnt_with_an_old_bus_voltage() {
         closed.run(LEARNING, &mut ());
         let held = ratio(drive, closed.controller());
         assert!((held - old).abs() < f64::EPSILON, "{}", drive.motor);
-        let engine = drive.engine(Model::Fixed, drive.set_point(0.0));
-        let plant = closed.plant().clone();
-        let mut closed = ClosedLoop::new(plant, engine, run_of(spec, omega, 0.0).delay);
+        let counts = drive.bus_counts(spec.inverter.v_bus);
+        closed.controller().set_bus(counts.expect("a measured bus"));
         closed.run(LEARNING, &mut ());
         let learnt = ratio(drive, closed.controller());
         moved += u32::from(learnt > old);

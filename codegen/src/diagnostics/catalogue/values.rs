@@ -150,7 +150,7 @@ pub fn emf_of_one_rpm(at: &Location, field: &str, given: &str) -> Option<Diagnos
     let meant = per_krpm(given)?;
     let inverse = given.replacen("V/rpm", "rpm/V", 1);
     let message = format!(
-        "`{field}`: {given} is an EMF constant, more than any motor has; write `back_emf: {meant}`, or `speed_constant: {inverse}`"
+        "`{field}`: {given} is an EMF constant, more than most motors have; write `back_emf: {meant}`, or `speed_constant: {inverse}`"
     );
     Some(Diagnostic::new(Code::WrongDimension, at, message))
 }
@@ -163,9 +163,8 @@ pub(super) fn per_krpm(given: &str) -> Option<String> {
 
 /// A voltage at a speed, which is a constant once it is divided by it; `meant`: the quotient.
 pub fn voltage_at_speed(at: &Location, field: &str, given: &str, meant: &str) -> Diagnostic {
-    let message = format!(
-        "`{field}`: cannot read `{given}`; write the speed below a line, `{field}: {meant}`"
-    );
+    let message =
+        format!("`{field}`: cannot read `{given}`; divide by the speed: `{field}: {meant}`");
     Diagnostic::new(Code::MalformedValue, at, message)
 }
 
@@ -178,13 +177,14 @@ pub fn pairs_of_poles(at: &Location, given: &str, pairs: &str) -> Diagnostic {
 
 /// Poles in place of pole pairs.
 pub fn poles_of_pairs(at: &Location, given: &str, poles: &str) -> Diagnostic {
-    let pairs = poles.parse::<u32>().ok();
-    let pairs = pairs.filter(|poles| poles.is_multiple_of(2));
-    let pairs = pairs.map(|poles| format!(" or `pole_pairs: {}`", poles / 2));
-    let message = format!(
-        "`pole_pairs`: {given} are not pairs; write `poles: {poles}`{}",
-        pairs.unwrap_or_default()
-    );
+    let even = poles.parse::<u32>().ok();
+    let even = even.filter(|poles| *poles > 0 && poles.is_multiple_of(2));
+    let remedy = match even {
+        Some(poles) => format!("`poles: {poles}` or `pole_pairs: {}`", poles / 2),
+        // Poles come in pairs.
+        None => format!("`pole_pairs: {poles}` if pairs are meant"),
+    };
+    let message = format!("`pole_pairs`: {given} are not pairs; write {remedy}");
     Diagnostic::new(Code::UnwantedUnit, at, message)
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct Given<'a> {
     pub part: Part,
 }
 
-/// No motor has so many volts to a rad/s between two terminals: it makes a kilovolt at 1000 rpm.
+/// Few motors have so many volts to a rad/s between two terminals: it makes a kilovolt at 1000 rpm.
 const MOST_EMF: f64 = 10.0;
 
 impl<'a> Reader<'a> {

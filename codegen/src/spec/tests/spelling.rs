@@ -293,7 +293,7 @@ fn poles_are_not_taken_for_pairs_nor_pairs_for_poles() {
         ),
         (
             "pole_pairs = \"7 poles\"",
-            "7 poles are not pairs; write `poles = 7`",
+            "7 poles are not pairs; write `pole_pairs = 7` if pairs are meant",
         ),
         (
             "poles = \"4 pairs\"",
@@ -302,6 +302,25 @@ fn poles_are_not_taken_for_pairs_nor_pairs_for_poles() {
     ] {
         let told = changed("pole_pairs = 4", given);
         assert!(told.ends_with(expected), "{given}: {told}");
+    }
+}
+
+#[test]
+fn a_voltage_at_a_speed_is_divided_by_it_and_one_at_a_temperature_is_not() {
+    let was = "back_emf = \"0.1648 V/(rad/s) line_to_line peak\"";
+    for (given, expected) in [
+        (
+            "3.6 Vpp line_to_line at 200 rpm",
+            Some("divide by the speed: `back_emf = \"3.6 Vpp/200 rpm line_to_line\"`"),
+        ),
+        ("0.1648 V/(rad/s) line_to_line peak at 25 degC", None),
+        ("3.6 V at", None),
+    ] {
+        let told = changed(was, &format!("back_emf = \"{given}\""));
+        match expected {
+            Some(expected) => assert!(told.ends_with(expected), "{given}: {told}"),
+            None => assert!(!told.contains("divide by"), "{given}: {told}"),
+        }
     }
 }
 

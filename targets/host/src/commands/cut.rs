@@ -37,12 +37,12 @@ fn of_current(
     is_motoring: bool,
     bus_current: Option<f64>,
 ) -> Option<String> {
-    let (name, most) = if is_motoring {
-        ("bus_current_limit", inverter.bus_currents.drawn)
+    let (name, most, way) = if is_motoring {
+        ("bus_current_limit", inverter.bus_currents.drawn, 1.0)
     } else {
-        ("return_current_limit", inverter.bus_currents.returned)
+        ("return_current_limit", inverter.bus_currents.returned, -1.0)
     };
-    let acts = |most: &f64| bus_current.is_some_and(|current| limit_acts(*most, current.abs()));
+    let acts = |most: &f64| bus_current.is_some_and(|current| limit_acts(*most, way * current));
     Some(format!(
         "`{name}` of {}",
         engineering(most.filter(acts)?, "A")

@@ -160,10 +160,15 @@ fn load_step(options: &Options, drive: &Prepared) -> Result<Option<LoadStep>, Fa
     else {
         return Ok(None);
     };
-    if step < 0.0 {
+    if step <= 0.0 {
         return Err(Failure::Argument(format!(
-            "--load-step {step}: it opposes the motion as --load does, so give it without a sign"
+            "--load-step {step}: it opposes the motion as --load does, so give it above 0"
         )));
+    }
+    if options.speed_set == Some(0.0) {
+        let text =
+            "--load-step: a load does not move a rotor at rest; give another --speed-set than 0";
+        return Err(Failure::Argument(text.to_owned()));
     }
     let load = options.run.plant.load.unwrap_or(0.0) + step;
     Ok(Some(LoadStep::to(load, &speed)))
@@ -272,7 +277,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 fn not_reached(outcome: &Outcome) -> Option<String> {
     let speed = outcome.speed?;
     let (set, last) = (speed.set_rpm?, speed.final_rpm?);
-    let remedy = "; raise --torque, up to what `max_current` allows, or lower the load";
+    let remedy = "; if the bus and `maximum_speed` allow that speed, raise --torque, up to what `max_current` allows, or lower the load";
     if speed.settled == Some(false) {
         return Some(format!(
             "--speed-set {set}: the speed has not settled within {:.0} % of that, or of the start's if it is faster; it is {} rpm at the end{remedy}",
@@ -399,15 +404,16 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
         });
         let settled = match speed.settled {
             None => "",
-            Some(true) if outcome.response.is_some() => ", settled before the step",
             Some(true) => ", settled",
             Some(false) => ", NOT settled",
         };
-        print_text(&format!(
-            "{of}: {} rpm on average, {} rpm at the end{settled}",
-            significant(speed.mean_rpm, 5),
-            significant(speed.final_rpm, 5)
-        ))?;
+        let [mean, last] = [speed.mean_rpm, speed.final_rpm].map(|rpm| significant(rpm, 5));
+        let speeds = if outcome.response.is_some() {
+            format!("{mean} rpm on average{settled} before the load step, {last} rpm at the end")
+        } else {
+            format!("{mean} rpm on average, {last} rpm at the end{settled}")
+        };
+        print_text(&format!("{of}: {speeds}"))?;
     }
     if let Some(response) = outcome.response {
         return print_text(&of_load_step(&response));

@@ -88,6 +88,8 @@ struct ToldBus {
     every: u32,
     /// Control periods to the next call.
     left: u32,
+    /// Whether it is told at present.
+    is_told: bool,
 }
 
 /// A drive or a model of it.
@@ -139,19 +141,21 @@ impl Engine<'_> {
     /// ignore it.
     pub fn set_bus(&mut self, counts: u16) {
         if let Some(bus) = &mut self.bus {
-            (bus.counts, bus.left) = (counts, 0);
+            (bus.counts, bus.left, bus.is_told) = (counts, 0, true);
         }
     }
 
-    /// Tells the bus voltage no longer.
+    /// Tells the bus voltage no longer, until [`set_bus`](Self::set_bus).
     pub fn stop_telling_bus(&mut self) {
-        self.bus = None;
+        if let Some(bus) = &mut self.bus {
+            bus.is_told = false;
+        }
     }
 
     /// Tells the bus voltage where that is due.
     #[inline]
     fn tell_bus(&mut self) {
-        let Some(bus) = &mut self.bus else {
+        let Some(bus) = self.bus.as_mut().filter(|bus| bus.is_told) else {
             return;
         };
         if bus.left > 0 {

@@ -179,6 +179,7 @@ impl Prepared {
                 // Twice before it is old.
                 every: (fresh.unsigned_abs() / 2).max(1),
                 left: 0,
+                is_told: true,
             }),
         };
         engine.set_current(set_point.current);
