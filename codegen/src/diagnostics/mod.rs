@@ -23,7 +23,7 @@ pub use number::{
     rpm_at_most, significant,
 };
 pub use render::Anchors;
-pub use similar::{did_you_mean_one, similar};
+pub use similar::{did_you_mean_one, nearest, similar};
 
 /// One error or warning: kind, text and the places involved.
 #[derive(Clone, Debug)]

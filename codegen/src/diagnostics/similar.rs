@@ -1,6 +1,5 @@
-//! Names of a library that a misspelt one may stand for.
+//! Known words that a misspelt one may stand for.
 
-use super::catalogue::nearest;
 use super::number::enumerated;
 use strsim::normalized_damerau_levenshtein;
 
@@ -12,6 +11,22 @@ const ALIKE: f64 = 0.75;
 
 /// Most names that are told.
 const MOST: usize = 3;
+
+/// The closest known word, if one is close.
+pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let word = word.to_lowercase();
+    known
+        .iter()
+        .map(|near| {
+            (
+                normalized_damerau_levenshtein(&word, &near.to_lowercase()),
+                *near,
+            )
+        })
+        .filter(|(similarity, _)| *similarity >= 0.5)
+        .max_by(|left, right| left.0.total_cmp(&right.0))
+        .map(|(_, near)| near)
+}
 
 /// The known names that a word may stand for: one that is like it; else at most three that have it as a part, or are
 /// like it between hyphens; else the closest one, if one is close.

@@ -8,7 +8,7 @@ use super::alternatives::same_quantity;
 pub use super::basis::Basis;
 use super::schema;
 use super::units::Unit;
-use crate::diagnostics::{Diagnostic, Location, catalogue};
+use crate::diagnostics::{Diagnostic, Location, catalogue, nearest};
 use std::fmt;
 
 /// A specification as written.
@@ -169,7 +169,7 @@ impl SpecAst {
         let of_fields = schema::section_of_most(fields).filter(|right| known.contains(right));
         self.malformed
             .push(catalogue::unknown_section(at, name, known, of_fields));
-        if let Some(meant) = catalogue::nearest(name, known).or(of_fields) {
+        if let Some(meant) = nearest(name, known).or(of_fields) {
             self.excuse(meant);
         }
     }

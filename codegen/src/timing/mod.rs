@@ -44,7 +44,7 @@ pub struct Chip {
     pub assumed: &'static str,
     /// The compiler whose code was counted.
     pub compiler: &'static str,
-    /// How many times as long a counted drive takes in C as in Rust, at most.
+    /// Largest ratio of a counted drive's time in C to its time in Rust.
     pub in_c: Times<f64>,
     estimates: Times<Estimate>,
     /// Figures of drives by [`digest`].
@@ -237,7 +237,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
         .collect()
 }
 
-/// How many times as long drives take in C as in Rust on a core, at most, and the compiler.
+/// Largest ratio of a drive's time in C to its time in Rust on a core, and the compiler.
 pub fn in_c(target: &str) -> Option<(&'static str, Times<f64>)> {
     let chip = CHIPS.iter().find(|chip| chip.target == target)?;
     Some((chip.compiler, chip.in_c))

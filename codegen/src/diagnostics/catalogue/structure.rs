@@ -1,7 +1,9 @@
 //! Texts about the structure of a specification: syntax, sections, fields, files.
 
 use super::part::Part;
-use crate::diagnostics::{Code, Diagnostic, Location, did_you_mean_one, enumerated, list, similar};
+use crate::diagnostics::{
+    Code, Diagnostic, Location, did_you_mean_one, enumerated, list, nearest, similar,
+};
 
 /// The macro call or the file does not parse; `what` is the parser's message.
 pub fn syntax(at: &Location, what: &str) -> Diagnostic {
@@ -325,15 +327,13 @@ pub fn absolute_motor_file(at: &Location) -> Diagnostic {
 pub fn unknown_board(at: &Location, name: &str, known: &[&str]) -> Diagnostic {
     let quoted = similar(name, known).into_iter();
     let quoted: Vec<_> = quoted.map(|meant| format!("{meant:?}")).collect();
-    let meant = match did_you_mean_one(&quoted) {
-        none if none.is_empty() => ";".to_owned(),
-        meant => meant,
-    };
+    let meant = did_you_mean_one(&quoted);
+    let end = if meant.is_empty() { ";" } else { "" };
     Diagnostic::new(
         Code::UnknownBoard,
         at,
         format!(
-            "`board`: the library has no {name:?}{meant} give one of {} or the path of a TOML file, for example \"boards/mine.toml\"",
+            "`board`: the library has no {name:?}{meant}{end} give one of {} or the path of a TOML file, for example \"boards/mine.toml\"",
             known.join(", ")
         ),
     )
@@ -386,21 +386,6 @@ pub(super) fn did_you_mean(word: &str, known: &[&str]) -> String {
     if known.len() < 2 {
         return String::new();
     }
-    nearest(word, known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
-}
-
-/// The closest known word, if one is close.
-pub(crate) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
-    let word = word.to_lowercase();
-    known
-        .iter()
-        .map(|near| {
-            (
-                strsim::normalized_damerau_levenshtein(&word, &near.to_lowercase()),
-                *near,
-            )
-        })
-        .filter(|(similarity, _)| *similarity >= 0.5)
-        .max_by(|left, right| left.0.total_cmp(&right.0))
-        .map(|(_, near)| near)
+    let near = nearest(word, known).map(|near| format!("`{near}`"));
+    did_you_mean_one(near.as_slice())
 }

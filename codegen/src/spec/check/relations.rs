@@ -199,7 +199,7 @@ pub(super) fn check_bus(
 /// Times from rest to rated speed with rated torque, second: a bare rotor takes more, a vehicle less.
 const RUN_UP: [f64; 2] = [1e-3, 60.0];
 
-/// Warns of an inertia that is likely in another unit.
+/// Warns of an inertia whose unit is probably wrong.
 pub(super) fn check_inertia(
     reader: &Reader,
     motor: &Motor,

@@ -8,7 +8,7 @@ mod values;
 pub(crate) use values::{Given, quantity_text};
 
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, Location};
+use crate::diagnostics::{Collector, Location, nearest};
 use crate::spec::ast::{Field, Section, Value};
 use crate::spec::field_rule::FieldRule;
 use crate::spec::rule::Rule;
@@ -178,8 +178,7 @@ impl<'a> Reader<'a> {
         self.section.fields.iter().any(|field| {
             !known.contains(&field.name.as_str())
                 && !other_names::is_unused(&field.name)
-                && other_names::meant(&field.name)
-                    .or_else(|| catalogue::nearest(&field.name, &known))
+                && other_names::meant(&field.name).or_else(|| nearest(&field.name, &known))
                     == Some(name)
         })
     }

@@ -38,7 +38,7 @@ pub struct Counted {
     pub target: Target,
     pub compiler: String,
     pub drives: Vec<Drive>,
-    /// How many times as long a drive takes in C as in Rust, at most.
+    /// Largest ratio of a drive's time in C to its time in Rust.
     pub in_c: Times<f64>,
 }
 
@@ -74,7 +74,7 @@ pub fn release(compiler: &str) -> String {
     words.join(" ")
 }
 
-/// How many times as long a drive takes in C (`step_x_c`) as in Rust (`step_x`), at most.
+/// Largest ratio of a drive's time in C (`step_x_c`) to its time in Rust (`step_x`).
 pub fn in_c(figures: &BTreeMap<String, Figures>) -> Times<f64> {
     let pairs = figures.iter().filter_map(|(symbol, in_c)| {
         let in_rust = figures.get(symbol.strip_suffix("_c")?)?;

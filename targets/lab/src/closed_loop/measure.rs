@@ -55,7 +55,7 @@ pub struct RunOptions {
 pub struct LoadStep {
     /// The whole load torque from then on, Nm.
     pub load: f64,
-    /// Time for which it is watched, seconds.
+    /// Time for which it is recorded, seconds.
     pub watched: f64,
 }
 

@@ -88,7 +88,7 @@ impl Speed {
 pub struct LoadResponse {
     /// Greatest loss of speed below the set-point, rpm.
     pub dip_rpm: f64,
-    /// Greatest speed beyond the set-point after that, rpm.
+    /// Greatest excess over the set-point after the deepest dip, rpm.
     pub overshoot_rpm: f64,
     /// Time from the step until the speed stays settled, millisecond; 0 where it never leaves that range,
     /// none where the record ends before.
@@ -150,7 +150,7 @@ fn mean_rpm(rows: &[PeriodRow]) -> f64 {
 const SETTLING_OF_SPEED: f64 = 6.0;
 
 impl LoadStep {
-    /// A step to a load, Nm, watched for the time in which the speed loop settles.
+    /// A step to a load in Nm, recorded for as long as the speed loop takes to settle.
     pub fn to(load: f64, speed: &SpeedLoop) -> Self {
         Self {
             load,

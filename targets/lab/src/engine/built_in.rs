@@ -67,15 +67,15 @@ fn nameless(spec: &str) -> &str {
 }
 
 /// Any drive behind a pointer.
-pub struct AnySubject(pub Box<dyn Subject + Send>);
+pub struct AnySubject<'g>(pub Box<dyn Subject + Send + 'g>);
 
-impl fmt::Debug for AnySubject {
+impl fmt::Debug for AnySubject<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("AnySubject")
     }
 }
 
-impl Subject for AnySubject {
+impl Subject for AnySubject<'_> {
     #[inline]
     fn step(&mut self, sample: &Sample) -> Legs {
         self.0.step(sample)

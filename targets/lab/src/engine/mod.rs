@@ -20,7 +20,6 @@ pub use prepared::{Prepared, SetPoint, prepare, prepare_ast};
 pub use selected::{PerSensor, PlantOptions, SelectedMotor};
 pub use verifier::Verifier;
 
-use crate::Interpreted;
 use crate::closed_loop::CurrentLoop;
 use crate::plant::Truth;
 use hexagen::{Fault, Legs, Sample};
@@ -72,7 +71,7 @@ impl EngineKind {
     }
 }
 
-/// A controller for the loop, by any engine. A measured bus voltage is told to it again and again, as a main
+/// A controller in the loop, whatever computes it. A measured bus voltage is set again before it is stale, as a main
 /// program does.
 #[derive(Debug)]
 pub struct Engine<'g> {
@@ -95,10 +94,8 @@ struct ToldBus {
 /// A drive or a model of it.
 #[derive(Debug)]
 enum AnyDrive<'g> {
-    /// Emitted code.
-    Compiled(AnySubject),
-    /// The verified graph, interpreted.
-    Interpreted(Box<Interpreted<'g>>),
+    /// The fixed-point program, compiled or interpreted.
+    Fixed(AnySubject<'g>),
     /// Model B.
     BitTrue(Box<BitTrue>),
     /// Model A.
@@ -109,8 +106,7 @@ impl Engine<'_> {
     /// The fixed-point program, for calls other than those here; `None` of a model.
     pub fn subject(&mut self) -> Option<&mut dyn Subject> {
         match &mut self.drive {
-            AnyDrive::Compiled(drive) => Some(drive),
-            AnyDrive::Interpreted(drive) => Some(&mut **drive),
+            AnyDrive::Fixed(drive) => Some(drive),
             AnyDrive::BitTrue(_) | AnyDrive::Ideal(_) => None,
         }
     }
@@ -119,8 +115,7 @@ impl Engine<'_> {
     pub fn set_current(&mut self, amperes: f64) {
         let bits = (amperes * f64::from(1 << 16)).round() as i32;
         match &mut self.drive {
-            AnyDrive::Compiled(drive) => drive.set_current(bits),
-            AnyDrive::Interpreted(drive) => drive.set_current(bits),
+            AnyDrive::Fixed(drive) => drive.set_current(bits),
             AnyDrive::BitTrue(model) => model.set_current(bits),
             AnyDrive::Ideal(model) => model.set_current_amps(amperes),
         }
@@ -130,8 +125,7 @@ impl Engine<'_> {
     pub fn set_speed(&mut self, rpm: f64) {
         let bits = (rpm * f64::from(1 << 16)).round() as i32;
         match &mut self.drive {
-            AnyDrive::Compiled(drive) => drive.set_speed(bits),
-            AnyDrive::Interpreted(drive) => drive.set_speed(bits),
+            AnyDrive::Fixed(drive) => drive.set_speed(bits),
             AnyDrive::BitTrue(model) => model.set_speed(bits),
             AnyDrive::Ideal(model) => model.set_speed(bits),
         }
@@ -165,8 +159,7 @@ impl Engine<'_> {
         bus.left = bus.every - 1;
         let counts = bus.counts;
         match &mut self.drive {
-            AnyDrive::Compiled(drive) => drive.set_bus(counts),
-            AnyDrive::Interpreted(drive) => drive.set_bus(counts),
+            AnyDrive::Fixed(drive) => drive.set_bus(counts),
             AnyDrive::BitTrue(model) => model.set_bus(counts),
             AnyDrive::Ideal(model) => model.set_bus(counts),
         }
@@ -178,8 +171,7 @@ impl CurrentLoop for Engine<'_> {
     fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
         self.tell_bus();
         match &mut self.drive {
-            AnyDrive::Compiled(drive) => drive.step(sample),
-            AnyDrive::Interpreted(drive) => drive.step(sample),
+            AnyDrive::Fixed(drive) => drive.step(sample),
             AnyDrive::BitTrue(model) => model.step(sample),
             AnyDrive::Ideal(model) => model.step_legs(sample),
         }
@@ -188,8 +180,7 @@ impl CurrentLoop for Engine<'_> {
     #[inline]
     fn fault(&self) -> Option<Fault> {
         match &self.drive {
-            AnyDrive::Compiled(drive) => drive.fault(),
-            AnyDrive::Interpreted(drive) => drive.fault(),
+            AnyDrive::Fixed(drive) => drive.fault(),
             AnyDrive::BitTrue(model) => model.fault(),
             AnyDrive::Ideal(model) => model.fault(),
         }

@@ -141,7 +141,7 @@ impl Prepared {
     }
 
     /// Emitted code in its initial state, if this drive is compiled in.
-    pub fn compiled(&self) -> Option<AnySubject> {
+    pub fn compiled(&self) -> Option<AnySubject<'static>> {
         self.built_in.map(|drive| AnySubject((drive.new)()))
     }
 
@@ -163,10 +163,10 @@ impl Prepared {
     /// A controller with its set-point.
     pub fn engine(&self, model: Model, set_point: SetPoint) -> Engine<'_> {
         let drive = match model {
-            Model::Fixed => match self.compiled() {
-                Some(drive) => AnyDrive::Compiled(drive),
-                None => AnyDrive::Interpreted(Box::new(self.interpreted())),
-            },
+            Model::Fixed => AnyDrive::Fixed(match self.compiled() {
+                Some(drive) => drive,
+                None => AnySubject(Box::new(self.interpreted())),
+            }),
             Model::BitTrue => AnyDrive::BitTrue(Box::new(self.bit_true())),
             Model::Ideal => AnyDrive::Ideal(Box::new(self.ideal())),
         };

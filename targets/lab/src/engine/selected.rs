@@ -200,8 +200,19 @@ impl SelectedMotor {
     /// # Errors
     /// All diagnostics.
     pub fn prepare_for_torque(&self, variant: Option<&str>) -> Result<Prepared, LabError> {
+        self.without_speed_loop(self.prepare(variant)?, variant)
+    }
+
+    /// The current loop of a drive of this motor, as [`Self::prepare_for_torque`] gives it; `variant` is that of the drive.
+    ///
+    /// # Errors
+    /// All diagnostics.
+    pub fn without_speed_loop(
+        &self,
+        drive: Prepared,
+        variant: Option<&str>,
+    ) -> Result<Prepared, LabError> {
         const OF_SPEED: [&str; 3] = ["speed_loop", "speed_bandwidth", "acceleration_limit"];
-        let drive = self.prepare(variant)?;
         if drive.spec.controller.common().speed.is_none() {
             return Ok(drive);
         }

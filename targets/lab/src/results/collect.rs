@@ -43,7 +43,7 @@ impl Plan {
         let on_board = PlantOptions::on_board(board);
         let motor = SelectedMotor::find(given, &on_board)?;
         let whole = motor.prepare(None)?;
-        let own = motor.prepare_for_torque(None)?;
+        let own = motor.without_speed_loop(whole.clone(), None)?;
         let is_paper = motor.source.name == PAPER_MOTOR;
         let mut notes = Vec::new();
         let planned = rows_of(&own.spec.inverter);
