@@ -26,7 +26,7 @@ impl CurrentLoop<'_, '_> {
     }
 
     /// K.
-    pub(super) fn k_di(&self) -> Coefficient {
+    pub fn k_di(&self) -> Coefficient {
         let (value, word) = (self.design.k_di, self.options.word);
         let doc = "K = 1/b: voltage over one period per change of current.";
         self.l.impedance("k_di", value, word, doc, ["K", "V/A"])

@@ -5,9 +5,10 @@ use crate::blocks::{
     CommonModeRule, Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line,
     pair_signs,
 };
-use crate::ir::{Coefficient, Expr, Interval, named};
+use crate::ir::{Coefficient, Expr, Interval, Memory, Phases, named};
 use crate::laws::current_loop::{
-    CurrentLoop, EmfUse, Front, LoopDesign, Needs, kept, lower_with, read, unlimited_voltage,
+    CurrentLoop, EmfUse, Front, LoopDesign, Needs, Remembered, kept, lower_with, read,
+    unlimited_voltage,
 };
 use crate::scaling::Lowered;
 use crate::spec::{PiPwmSpec, Spec};
@@ -16,6 +17,13 @@ use crate::spec::{PiPwmSpec, Spec};
 const INTEGRATION: &[&str] = &[
     "Integration and tracking anti-windup with one time constant: s + k_i (p + v - u) with u = p + s + e the voltage before",
     "the limit and v the limited one, so the integral part tracks v - e.",
+];
+
+/// Documentation of the regulator with a turning reference.
+const TURNING: &[&str] = &[
+    "PI regulator per phase: v = k_p (i_ref - i) + integral + e + K (i_ref_end - a i_ref_begin). The last term is the voltage",
+    "that moves the current along the reference over the target period, so the regulator has only its deviation to",
+    "correct: i_ref belongs to the sample, i_ref_begin and i_ref_end to the begin and end of the target period.",
 ];
 
 /// Documentation of the integral part's error.
@@ -28,10 +36,14 @@ pub(super) fn lower(
     design: &LoopDesign,
     scale: Scale,
 ) -> Lowered {
-    let gain = Gain {
-        value: options.proportional_gain(&spec.motor),
-        symbol: "k_p",
-        formula: "k_p = 2 pi f L",
+    let gain = if options.turns_reference() {
+        Gain::stiffness(design.k_di)
+    } else {
+        Gain {
+            value: options.proportional_gain(&spec.motor),
+            symbol: "k_p",
+            formula: "k_p = 2 pi f L",
+        }
     };
     lower_with(spec, scale, gain, |l, set_point| {
         let emf = if options.feed_forward {
@@ -100,24 +112,48 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let l = self.l;
         let doc = "Integral part of the regulator, words of voltage.";
         let memories = l.memories(["integral_a", "integral_b"], self.range, doc);
-        let doc = "PI regulator per phase: v = k_p (i_ref - i) + integral, plus the EMF if it is fed forward.";
-        l.b.stage("regulate", &[doc]);
+        let turning = self
+            .options
+            .turns_reference()
+            .then(|| Turning::new(step, self.gain, front.reference));
+        let docs: &[&str] = match turning {
+            None => &[
+                "PI regulator per phase: v = k_p (i_ref - i) + integral, plus the EMF if it is fed forward.",
+            ],
+            Some(_) => TURNING,
+        };
+        l.b.stage("regulate", docs);
         let integral = read(memories);
         let drop = self.k_drop * front.currents.pair();
         let held = self.options.dead_time_compensation.then(|| {
+            if turning.is_some() {
+                return step.k_di() * front.currents.pair();
+            }
             named! {
                 let drop = drop;
                 let held = -drop;
             }
             held
         });
+        let due = turning.map(|turning| turning.due());
         named! {
-            let p = front.reference + drop;
+            let p = due.unwrap_or(front.reference) + drop;
         }
+        let led = turning.map(|turning| turning.led(front.reference));
+        let forward = match (front.e, led) {
+            (Some(e), Some(led)) => {
+                named! {
+                    let forward = e + led;
+                }
+                Some(forward)
+            }
+            (e, led) => e.or(led),
+        };
         let asked = p + integral;
-        let asked = front.e.map_or(asked, |e| asked + e);
+        let asked = forward.map_or(asked, |forward| asked + forward);
         let u = unlimited_voltage(l, asked);
-        let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, self.gain));
+        let stiffness = turning.map_or(self.gain, |_| step.design.k_di);
+        let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, stiffness));
         let emf = front.e.map(|e| move || e);
         let common_mode = CommonModeRule::new(l, self.options.common_mode);
         let hexagon = Hexagon {
@@ -129,7 +165,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
         let mut remembered = front.turned(l, &limited);
         l.b.stage("integrate", INTEGRATION);
-        let target = front.e.map_or(limited.u, |e| limited.u - e);
+        let target = forward.map_or(limited.u, |forward| limited.u - forward);
         named! {
             let distance = target - integral;
             let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
@@ -141,6 +177,11 @@ impl<'l, 'b> Regulator<'l, 'b> {
         };
         let command = modulator.three(l, &limited, common_mode);
         remembered.extend(kept(memories, integral_now));
+        remembered.extend(
+            turning
+                .into_iter()
+                .flat_map(|turning| turning.kept(front.reference)),
+        );
         step.remember(front, &command, Some(limited.u), None, remembered);
     }
 
@@ -209,4 +250,62 @@ fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
     }
     let limit = bus.unsigned_abs().next_power_of_two() as i64;
     Interval::new(-limit, limit - 1)
+}
+
+/// A reference that turns: those of the last steps, as voltages K i_ref.
+#[derive(Clone, Copy)]
+struct Turning<'b> {
+    /// Reference at the begin of the target period, with delay 1.
+    begin: Option<[Memory<'b>; 2]>,
+    /// Reference at the sample; that is the begin of the target period with delay 0.
+    sample: [Memory<'b>; 2],
+    /// a, negative.
+    k_lead: Coefficient,
+    /// k_p/K.
+    k_due: Coefficient,
+}
+
+impl<'b> Turning<'b> {
+    fn new(step: &CurrentLoop<'_, 'b>, gain: f64, reference: Phases<'b>) -> Self {
+        let (l, word) = (step.l, step.options.word);
+        let most = reference.0.map(|phase| phase.interval().magnitude());
+        let range = Interval::symmetric(most[0].max(most[1]));
+        let doc = "Reference at the end of the period that begins now, as a voltage.";
+        let begin =
+            (step.options.delay == 1).then(|| l.memories(["j_a_next", "j_b_next"], range, doc));
+        let doc = "Reference at the next sample, as a voltage.";
+        let sample = l.memories(["j_a_due", "j_b_due"], range, doc);
+        let pole = 1.0 - step.design.k_decay;
+        let doc = "Share of the reference at the begin of the target period that is left at its end, negative.";
+        let k_lead = l.coefficient("k_lead", -pole, word, doc, &format!("-a = -{pole:.6}"));
+        let share = gain / step.design.k_di;
+        let doc = "Proportional gain over the voltage per change of current in a period.";
+        let k_due = l.coefficient("k_due", share, word, doc, &format!("k_p/K = {share:.6}"));
+        Self {
+            begin,
+            sample,
+            k_lead,
+            k_due,
+        }
+    }
+
+    /// The reference that the sampled current should have had, times the proportional gain.
+    fn due(&self) -> Phases<'b> {
+        named! {
+            let due = self.k_due * read(self.sample);
+        }
+        due
+    }
+
+    /// The voltage that moves the current along the reference over the target period.
+    fn led(&self, end: Phases<'b>) -> Phases<'b> {
+        end + self.k_lead * read(self.begin.unwrap_or(self.sample))
+    }
+
+    /// The references for the next step.
+    fn kept(&self, end: Phases<'b>) -> Remembered<'b> {
+        let now = self.begin.map_or(end, read);
+        let next = self.begin.into_iter().flat_map(|begin| kept(begin, end));
+        next.chain(kept(self.sample, now)).collect()
+    }
 }

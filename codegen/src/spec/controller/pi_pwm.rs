@@ -11,7 +11,7 @@ use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;
 use crate::spec::words::words;
-use crate::spec::{MotorSpec, Spec};
+use crate::spec::{MotorSpec, Reference, Spec};
 use std::f64::consts::TAU;
 
 words! {
@@ -46,6 +46,11 @@ impl PiPwmSpec {
     /// Proportional gain 2 pi f L, V/A.
     pub fn proportional_gain(&self, motor: &MotorSpec) -> f64 {
         TAU * self.bandwidth * motor.inductance
+    }
+
+    /// Whether the voltage that turns the reference is fed forward: that of a proportional one.
+    pub fn turns_reference(&self) -> bool {
+        self.feed_forward && self.common.reference == Reference::Proportional
     }
 
     /// Share of the proportional voltage that one period integrates: T_s/T_i.

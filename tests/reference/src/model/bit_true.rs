@@ -554,6 +554,12 @@ impl<W: Word> BitTrue<W> {
             sector_eff,
             commutating,
             integral: self.state.integral,
+            j_begin: if delayed {
+                self.state.j_next
+            } else {
+                self.state.j_due
+            },
+            j_due: self.state.j_due,
             set_point: j,
             direction: self.state.timing.direction,
             hysteresis: self.state.hysteresis,
@@ -614,6 +620,10 @@ impl<W: Word> BitTrue<W> {
             self.state.ramp_begun = greater(self.state.ramp_begun, self.state.timing.ramp_known());
             self.state.j_in_force = j_in_force;
             self.state.integral = decision.integral;
+            if self.variant.turns_reference() {
+                self.state.j_due = if delayed { self.state.j_next } else { j_ref };
+                self.state.j_next = j_ref;
+            }
             self.state.hysteresis = decision.hysteresis;
             self.state.vector_prev = state::Vector(decision.vector);
             self.state.past = decision.past;

@@ -522,6 +522,8 @@ impl Ideal {
 
         let [s_a, s_b] = self.state.integral;
         let integral = from_ab(s_a, s_b);
+        let [i_next, i_due] = [self.state.j_next, self.state.j_due]
+            .map(|[j_a, j_b]| from_ab(j_a, j_b) * self.phase.b);
 
         // 7 applied voltage
         let v_now = match (self.variant.applied_now, self.variant.floating) {
@@ -555,6 +557,8 @@ impl Ideal {
             sector_eff,
             commutating,
             integral,
+            i_begin: if delayed { i_next } else { i_due },
+            i_due,
             set_point: current,
             direction: self.state.timing.direction,
             rises: self.state.rises,
@@ -615,6 +619,10 @@ impl Ideal {
             self.state.ramp_begun = self.state.ramp_begun.max(known);
             self.state.current_in_force = current_in_force;
             self.state.integral = decision.integral;
+            if self.variant.turns_reference() {
+                self.state.j_due = to_ab(&(if delayed { i_next } else { i_ref } / self.phase.b));
+                self.state.j_next = to_ab(&(i_ref / self.phase.b));
+            }
             self.state.rises = decision.rises;
             self.state.vector_prev = decision.vector;
             self.state.past = decision.past;
@@ -633,6 +641,8 @@ impl Ideal {
             self.state.residual_count = 0.0;
             self.state.torque.light = 0.0;
             self.state.integral = [0.0; 2];
+            self.state.j_next = [0.0; 2];
+            self.state.j_due = [0.0; 2];
             self.state.speed_integral = 0.0;
             self.state.speed_in_force = 0.0;
             self.state.ramp_begun = 0.0;

@@ -104,6 +104,11 @@ pub struct PhysicalState {
     pub(super) torque: LearntTorque,
     /// Integral part of the voltage (PI), phases a, b, volt.
     pub integral: [f64; 2],
+    /// Reference at the end of the period that begins with the next sample as a voltage (PI that turns it),
+    /// phases a, b, volt.
+    pub j_next: [f64; 2],
+    /// The same at the next sample.
+    pub j_due: [f64; 2],
     /// Whether the components along a and across it are to rise (PHCC); `None` before the first
     /// sample in control.
     pub rises: [Option<bool>; 2],

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::emf_shape::EmfShape;
 use crate::spec::{
-    Bus, Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg,
+    Bus, Candidates, CommutationEnd, Controller, EmfSource, LoopOptions, Modulation, OffLeg, PiPwm,
     Reference, Saturation, Spec, Switch,
 };
 
@@ -34,6 +34,8 @@ pub struct Variant {
     pub dead_time: Switch,
     /// PI: whether there is one controller for the pair, or one per axis.
     pub six_step: Option<Switch>,
+    /// Section 9 of PI: the voltage that turns the reference is fed forward.
+    pub turning: Switch,
     /// Section 10: the saturation rule, if the voltage can exceed the hexagon.
     pub saturation: Option<Saturation>,
 }
@@ -115,6 +117,10 @@ impl Variant {
                 Controller::PiPwm(pi_pwm) => Some(pi_pwm.six_step),
                 _ => None,
             },
+            turning: match &spec.controller {
+                Controller::PiPwm(pi_pwm) if turns(pi_pwm, options.reference) => Switch::On,
+                _ => Switch::Off,
+            },
             saturation,
         }
     }
@@ -161,6 +167,11 @@ impl Variant {
         self.emf == Some(EmfSource::Observer)
     }
 
+    /// Section 9 of PI: the voltage that turns the reference is fed forward.
+    pub fn turns_reference(&self) -> bool {
+        self.turning == Switch::On
+    }
+
     /// Section 6: the shape of the proportional reference takes part.
     pub fn shaped(&self) -> bool {
         self.options.reference == Reference::Proportional || self.observes()
@@ -182,16 +193,21 @@ impl Variant {
     }
 }
 
-/// Voltage per ampere of the current reference: 1/b, or the proportional gain of a PI controller.
+/// A proportional reference turns in every period, and with feed-forward its voltage is known.
+fn turns(pi_pwm: &PiPwm, reference: Reference) -> bool {
+    pi_pwm.feed_forward == Switch::On && reference == Reference::Proportional
+}
+
+/// Voltage per ampere of the current reference: 1/b, or the proportional gain of a PI controller that does not
+/// turn it.
 pub fn reference_gain(spec: &Spec) -> f64 {
+    let proportional = |bandwidth: f64| std::f64::consts::TAU * bandwidth * spec.motor.inductance;
     match &spec.controller {
-        Controller::Pdcc(_) | Controller::FcsMpc(_) | Controller::Phcc(_) => {
-            1.0 / crate::DiscretePhase::new(spec).b
+        Controller::PPwm(p_pwm) => proportional(p_pwm.bandwidth),
+        Controller::PiPwm(pi_pwm) if !turns(pi_pwm, spec.loop_options().reference) => {
+            proportional(pi_pwm.bandwidth)
         }
-        Controller::PPwm(p_pwm) => std::f64::consts::TAU * p_pwm.bandwidth * spec.motor.inductance,
-        Controller::PiPwm(pi_pwm) => {
-            std::f64::consts::TAU * pi_pwm.bandwidth * spec.motor.inductance
-        }
+        _ => 1.0 / crate::DiscretePhase::new(spec).b,
     }
 }
 

@@ -354,7 +354,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         Controller::FcsMpc(_) => f_v - 4,
         _ => f_v,
     };
-    let (gain, integral_share) = match &spec.controller {
+    let (proportional, integral_share) = match &spec.controller {
         Controller::PiPwm(pi) => (
             TAU * pi.bandwidth * motor.inductance,
             inverter.t_s / pi.integral_time,
@@ -362,6 +362,8 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         Controller::PPwm(p) => (TAU * p.bandwidth * motor.inductance, 1.0),
         _ => (1.0 / b, 1.0),
     };
+    // Of a reference that turns, too.
+    let gain = proportional.max(1.0 / b);
     let scale = 2f64.powi(f_v);
     let bus = inverter.v_bus_max().expect("a bus");
     let turn = f64::from(motor.pole_pairs) * inverter.t_s / (1.6 * motor.emf_constant);
@@ -398,7 +400,9 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_pole", shift(a)),
         ("k_first", shift(1.0 + a * a)),
         ("k_pole_sixth", shift(a / 6.0)),
-        ("k_drop", shift(ohm * gain)),
+        ("k_drop", shift(ohm * proportional)),
+        ("k_due", shift(proportional * b)),
+        ("k_lead", shift(a)),
         ("k_i", shift(integral_share)),
         ("k_set", shift(scale * gain / w / 65_536.0)),
         (

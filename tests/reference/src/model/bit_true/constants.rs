@@ -338,6 +338,11 @@ impl<W: Word> Constants<W> {
                 (Part::Integral, variant.six_step == Some(Switch::Off)),
                 (Part::PairIntegral, variant.six_step == Some(Switch::On)),
                 (
+                    Part::ReferenceNext,
+                    variant.turns_reference() && variant.delayed(),
+                ),
+                (Part::ReferenceDue, variant.turns_reference()),
+                (
                     Part::Hysteresis,
                     matches!(spec.controller, Controller::Phcc(_)) && !variant.folds_wishes(),
                 ),

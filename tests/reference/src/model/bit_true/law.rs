@@ -39,6 +39,10 @@ pub struct Inputs<'a, W> {
     pub sector_eff: usize,
     pub commutating: bool,
     pub integral: [W; 2],
+    /// Reference at the begin of the target period.
+    pub j_begin: [W; 2],
+    /// Reference at the sample.
+    pub j_due: [W; 2],
     /// The set-point word itself.
     pub set_point: W,
     /// Sense of rotation, 1 or -1.

@@ -32,6 +32,8 @@ pub enum Part {
     TorqueLearning,
     Integral,
     PairIntegral,
+    ReferenceNext,
+    ReferenceDue,
     Hysteresis,
     VectorMemory,
     Due,

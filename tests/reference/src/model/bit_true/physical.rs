@@ -117,6 +117,8 @@ impl State<f64> {
                 light: self.torque.light,
             },
             integral: volts(self.integral),
+            j_next: volts(self.j_next),
+            j_due: volts(self.j_due),
             rises: self
                 .hysteresis
                 .map(|word| (word != 0.0).then_some(word > 0.0)),

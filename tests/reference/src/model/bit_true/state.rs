@@ -52,6 +52,10 @@ pub struct State<W: Word> {
     pub residual_count: W,
     pub torque: Torque<W>,
     pub integral: [W; 2],
+    /// `j_a_next`, `j_b_next`.
+    pub j_next: [W; 2],
+    /// `j_a_due`, `j_b_due`.
+    pub j_due: [W; 2],
     /// `h_a`, `h_b`; unless stored in the contributions of past periods.
     pub hysteresis: [W; 2],
     pub vector_prev: Vector,
@@ -317,6 +321,14 @@ macro_rules! for_each_word {
         if $parts.has(Part::PairIntegral) {
             $show!("integral", $state.integral[0]);
         }
+        if $parts.has(Part::ReferenceNext) {
+            $show!("j_a_next", $state.j_next[0]);
+            $show!("j_b_next", $state.j_next[1]);
+        }
+        if $parts.has(Part::ReferenceDue) {
+            $show!("j_a_due", $state.j_due[0]);
+            $show!("j_b_due", $state.j_due[1]);
+        }
         if $parts.has(Part::Due) {
             $show!("due_a", $state.past.due[0]);
             $show!("due_b", $state.past.due[1]);
@@ -389,6 +401,8 @@ impl<W: Word> State<W> {
         self.residual_count = word(0.0);
         self.torque.light = word(0.0);
         self.integral = [word(0.0); 2];
+        self.j_next = [word(0.0); 2];
+        self.j_due = [word(0.0); 2];
         self.hysteresis = [word(0.0); 2];
         self.vector_prev = Vector(0);
         self.past = Past::default();

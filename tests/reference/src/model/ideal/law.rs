@@ -35,6 +35,10 @@ pub struct Inputs {
     pub sector_eff: usize,
     pub commutating: bool,
     pub integral: Vector2<f64>,
+    /// Reference at the begin of the target period.
+    pub i_begin: Vector2<f64>,
+    /// Reference at the sample.
+    pub i_due: Vector2<f64>,
     /// The current set-point itself, ampere.
     pub set_point: f64,
     /// Sense of rotation, 1 or -1.

@@ -6,9 +6,9 @@ use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, halve, round_half_up, within, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::{self, Limited};
-use crate::model::variant::reference_gain;
 use crate::model::{Reach, sector};
-use crate::{Error, Saturation, Spec, Switch};
+use crate::{DiscretePhase, Error, Saturation, Spec, Switch};
+use std::f64::consts::TAU;
 
 #[derive(Clone, Debug)]
 pub struct PiPwm<W> {
@@ -16,11 +16,36 @@ pub struct PiPwm<W> {
     six_step: bool,
     saturation: Saturation,
     k_drop: Coefficient<W>,
+    turning: Option<Turning<W>>,
     k_i: Coefficient<W>,
     integral_range: [f64; 2],
     dead_time: DeadTime<W>,
     /// Of three pulsed legs, or of the pair.
     legs: CommonModeRule<W>,
+}
+
+/// Coefficients of a reference that turns.
+#[derive(Clone, Debug)]
+struct Turning<W> {
+    k_due: Coefficient<W>,
+    k_lead: Coefficient<W>,
+    /// Of the dead-time compensation.
+    k_di: Coefficient<W>,
+}
+
+impl<W: Word> Turning<W> {
+    fn new(spec: &Spec, k_p: f64, scale: &Scale) -> Result<Option<Self>, Error> {
+        if !scale.variant.turns_reference() {
+            return Ok(None);
+        }
+        let DiscretePhase { a, b } = DiscretePhase::new(spec);
+        let compensates = scale.variant.compensates();
+        Ok(Some(Self {
+            k_due: scale.coefficient("k_due", k_p * b)?,
+            k_lead: scale.coefficient("k_lead", -a)?,
+            k_di: scale.only_if(compensates, "k_di", scale.ohm / b)?,
+        }))
+    }
 }
 
 impl<W: Word> PiPwm<W> {
@@ -32,10 +57,12 @@ impl<W: Word> PiPwm<W> {
             let limit = bus.log2().ceil().exp2();
             [-limit, limit - 1.0]
         };
+        let k_p = TAU * options.bandwidth * spec.motor.inductance;
         Ok(Self {
             six_step: options.six_step == Switch::On,
             saturation: options.saturation,
-            k_drop: scale.coefficient("k_drop", -scale.ohm * reference_gain(spec))?,
+            k_drop: scale.coefficient("k_drop", -scale.ohm * k_p)?,
+            turning: Turning::new(spec, k_p, scale)?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
             dead_time: DeadTime::new(spec, scale)?,
             legs: match options.six_step {
@@ -53,8 +80,15 @@ impl<W: Word> PiPwm<W> {
         }
         // 9; without feed-forward the EMF is 0.
         let drop = both(|x| self.k_drop.mul(now.i[x]));
-        let p = both(|x| now.j[x] + drop[x]);
-        let u_unsat = both(|x| p[x] + now.integral[x] + now.e[x]);
+        let (due, forward) = match &self.turning {
+            Some(turning) => (
+                now.j_due.map(|j_x| turning.k_due.mul(j_x)),
+                both(|x| now.e[x] + now.j[x] + turning.k_lead.mul(now.j_begin[x])),
+            ),
+            None => (now.j, now.e),
+        };
+        let p = both(|x| due[x] + drop[x]);
+        let u_unsat = both(|x| p[x] + now.integral[x] + forward[x]);
         // 10, 11
         let limited = limit::limit(
             self.saturation,
@@ -67,10 +101,14 @@ impl<W: Word> PiPwm<W> {
         // 12
         let [low, high] = self.integral_range;
         let integral = both(|x| {
-            let distance = u[x] - now.e[x] - now.integral[x];
+            let distance = u[x] - forward[x] - now.integral[x];
             let moved = now.integral[x] + self.k_i.mul(distance);
             within(moved, low, high)
         });
+        let flow = match &self.turning {
+            Some(turning) => both(|x| turning.k_di.mul(now.i[x])),
+            None => drop.map(|drop| -drop),
+        };
         Decision {
             u_unsat,
             u,
@@ -79,7 +117,7 @@ impl<W: Word> PiPwm<W> {
             command: pulses::three(
                 now,
                 legs,
-                self.dead_time.shifts(now, drop.map(|drop| -drop)),
+                self.dead_time.shifts(now, flow),
                 &self.legs,
                 false,
             ),

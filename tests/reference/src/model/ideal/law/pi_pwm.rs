@@ -5,16 +5,19 @@ use super::dead_time::DeadTime;
 use super::{Decision, Inputs, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
-use crate::model::variant::reference_gain;
+use crate::model::variant::Variant;
 use crate::model::{Reach, sector};
 use crate::{Error, Saturation, Spec, Switch};
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
 #[derive(Clone, Copy, Debug)]
 pub struct PiPwm {
     /// One controller for the pair.
     six_step: bool,
     saturation: Saturation,
+    /// The voltage that turns the reference is fed forward.
+    turning: bool,
     /// Proportional gain, V/A.
     k_p: f64,
     /// Share of the proportional voltage that is integrated per period.
@@ -31,7 +34,8 @@ impl PiPwm {
         Ok(Self {
             six_step: options.six_step == Switch::On,
             saturation: options.saturation,
-            k_p: reference_gain(spec),
+            turning: Variant::new(spec).turns_reference(),
+            k_p: TAU * options.bandwidth * spec.motor.inductance,
             k_i: spec.inverter.t_s / options.integral_time,
             dead_time: DeadTime::new(spec),
             legs: match options.six_step {
@@ -46,8 +50,14 @@ impl PiPwm {
         if self.six_step {
             return self.decide_pair(now);
         }
-        let p = (now.i_ref - now.i) * self.k_p;
-        let u_unsat = p + now.integral + now.e;
+        let (i_due, forward) = if self.turning {
+            let led = (now.i_ref - now.i_begin * now.phase.a) / now.phase.b;
+            (now.i_due, now.e + led)
+        } else {
+            (now.i_ref, now.e)
+        };
+        let p = (i_due - now.i) * self.k_p;
+        let u_unsat = p + now.integral + forward;
         let limited = limit::limit(
             self.saturation,
             &phases(&u_unsat),
