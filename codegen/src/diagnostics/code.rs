@@ -185,6 +185,8 @@ codes! {
     ConstantsApart = 617,
     /// An inertia with which the rated torque takes an unlikely time to rated speed.
     UnlikelyInertia = 618,
+    /// Hall edges that are seen at samples only make the torque ripple.
+    SampledHalls = 619,
     /// An internal error of the generator.
     Internal = 901,
 }

@@ -475,7 +475,7 @@ impl Code {
             Self::EstimateTurnsTooFar => say(
                 "The controller takes the EMF of the last period for that of the period after the next. At this speed the rotor turns so far in between that the EMF is another one.",
                 "f_pwm = \"4 kHz\"\nkind = \"pdcc\"\nemf = \"estimated\"",
-                "f_pwm = \"4 kHz\"\nkind = \"pdcc\"\nemf = \"observer\"",
+                "f_pwm = \"4 kHz\"\nhall_timer_clock = \"1 MHz\"\nkind = \"pdcc\"\nemf = \"observer\"",
                 "Leave `emf` out, or use a shorter period.",
             ),
             Self::MeanForPeak => say(
@@ -537,6 +537,12 @@ impl Code {
                 "bus_voltage = \"48 V\"\ninertia = \"24 kg m2\"",
                 "bus_voltage = \"48 V\"\ninertia = \"24 kg cm2\"",
                 "Look up the unit in the data sheet, and state the inertia of the rotor and of what it moves. If it is right, let the warning be.",
+            ),
+            Self::SampledHalls => say(
+                "Without a timer a Hall edge is seen at the next sample, up to a control period late. The rotor's angle jumps by what it turns in that time, and reference and EMF jump with it: the more so the less inductance the motor has. A timer that captures the edges tells when they came.",
+                "bus_voltage = \"100 V\"\nrated_speed = \"4000 rpm\"",
+                "bus_voltage = \"100 V\"\nrated_speed = \"4000 rpm\"\nhall_timer_clock = \"1 MHz\"",
+                "Let a timer capture the Hall edges, and state its clock as hall_timer_clock; or raise f_pwm, so that the rotor turns less in a period.",
             ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",

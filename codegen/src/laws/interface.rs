@@ -246,7 +246,14 @@ fn current_sensors(spec: &Spec) -> String {
     };
     let phases = inverter.sensed_phases.phases().iter();
     let phases: Vec<&str> = phases.map(|phase| ["a", "b", "c"][*phase]).collect();
-    let sensors = format!("Current sensors: {place} {}", phases.join(", "));
+    let delay = inverter.sampling_delay();
+    let instant = if delay > 0.0 {
+        let delay = engineering(delay, "s");
+        format!(", sampled {delay} (half the dead time) behind the turning point of the timer")
+    } else {
+        String::new()
+    };
+    let sensors = format!("Current sensors: {place} {}{instant}", phases.join(", "));
     let share = spec.reach_share();
     if share >= 1.0 {
         return format!("{sensors}.");

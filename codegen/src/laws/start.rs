@@ -40,9 +40,32 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// trip.
 ///
 /// A drive that models the EMF waits for the rotor's angle where it turns fast
-/// ([`Spec::waiting_speed`]), and knows the EMF then, provided that its sensors measure such speeds.
+/// ([`Spec::waiting_speed`]), and knows the EMF then. Its sensors measure no speed below `minimum_speed`, so
+/// up to there it must be able to begin without the EMF.
+fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
+    let begins = blind_start(spec, design);
+    let inverter = &spec.inverter;
+    let has_angle = spec.angle_sensor().is_some();
+    match spec.waiting_speed() {
+        Some(from) if has_angle || inverter.minimum_speed <= from.max(begins) => {
+            emf_within_bus(spec)
+        }
+        _ => begins,
+    }
+}
+
+/// Speed up to which the lowest bus, as far as legs reach, exceeds the EMF between two terminals; at most the
+/// greatest speed of the drive.
+fn emf_within_bus(spec: &Spec) -> f64 {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
+    let lowest = spec.reach_share() * inverter.lowest_bus();
+    (lowest / line).min(inverter.maximum_speed)
+}
+
+/// Greatest rotor speed, mechanical rad/s, at which control may begin without the EMF.
 ///
-/// For any other drive the EMF is unknown at the first command: no estimate yet, no speed from the
+/// The EMF is unknown at the first command: no estimate yet, no speed from the
 /// Hall sensors. Later knowledge only helps, and a slow filter may never gain it. So the current
 /// is the closed loop's response to an EMF that appears at once and turns: for prediction without
 /// an EMF, one period of it before the first sample that shows it and, with delay 1, one more. The
@@ -51,18 +74,12 @@ pub(super) fn start_rpm(spec: &Spec, design: &LoopDesign) -> i64 {
 /// vectors the greatest distance from the line between them. A speed loop brakes once it knows the
 /// speed, a sector later at the earliest, when a slow filter has not learned the EMF yet. Samples
 /// lie where the pulse ripple crosses its mean.
-fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
+fn blind_start(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let options = spec.controller.common();
     let lowest = spec.reach_share() * inverter.lowest_bus();
-    let most = (lowest / line).min(inverter.maximum_speed);
-    if spec
-        .waiting_speed()
-        .is_some_and(|from| spec.angle_sensor().is_some() || inverter.minimum_speed <= from)
-    {
-        return most;
-    }
+    let most = emf_within_bus(spec);
     let turn = most * f64::from(motor.pole_pairs) * inverter.t_s;
     let filter = options.emf_filter;
     let estimates = options.emf == EmfSource::Estimated;

@@ -90,6 +90,16 @@ impl EmfShape {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
+    /// Greatest relative change per radian of the length of the unit EMF in the plane, whichever way.
+    pub fn steepness(self) -> f64 {
+        const STEP: f64 = 1e-3;
+        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
+        let length = |theta_e: f64| self.squared_length(theta_e).sqrt();
+        let slopes =
+            angles.map(|theta_e| (length(theta_e + STEP) / length(theta_e)).ln().abs() / STEP);
+        slopes.fold(0.0, f64::max)
+    }
+
     /// Mean of 1/s^2, s the length of the unit EMF in the plane, over 600 angles of a tenth of a degree.
     pub fn mean_inverse_square(self) -> f64 {
         const ANGLES: u32 = 600;

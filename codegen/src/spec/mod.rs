@@ -30,6 +30,7 @@ mod option_texts;
 mod options;
 pub(crate) mod reader;
 mod rule;
+mod sampled_halls;
 pub(crate) mod schema;
 mod sensing;
 #[cfg(test)]

@@ -127,6 +127,16 @@ impl InverterSpec {
         f64::from(self.pwm_per_control) / t_s
     }
 
+    /// Time from the turning point at which a control period begins to the sampling instant, second; negative
+    /// before it. Each edge of a leg comes late by the dead time or not at all, whichever way its current flows,
+    /// so the middle of its pulses, at which the sample is the mean of the current, comes half of it late.
+    pub fn sampling_delay(&self) -> f64 {
+        match self.current_sensing {
+            CurrentSensing::InPhase => self.dead_time / 2.0,
+            CurrentSensing::LowSide(times) => -times.lead,
+        }
+    }
+
     /// For how long a leg that is sampled must be low; none with sensors in the phases.
     pub fn window(&self) -> Option<SensingWindow> {
         match self.current_sensing {

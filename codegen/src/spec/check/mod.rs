@@ -23,7 +23,7 @@ use self::inverter::Inverter;
 use self::motor::Motor;
 use super::reader::Reader;
 use super::{Spec, SpecAst, schema};
-use crate::diagnostics::{Code, Collector, Diagnostics, catalogue};
+use crate::diagnostics::{Code, Collector, Diagnostic, Diagnostics, catalogue, engineering};
 
 /// Checks a specification and fills in every default.
 ///
@@ -89,24 +89,37 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         &mut warnings,
     );
 
-    let origins = Origins::new(ast, &whole_inverter, &whole_controller, warnings);
     match (motor.finish(), finished, controller) {
         (Some(motor), Some(inverter), Some(controller)) => {
-            let name = ast.name.text.clone();
-            errors.into_result((
-                Spec {
-                    name,
-                    motor,
-                    inverter,
-                    controller,
-                },
-                origins,
-            ))
+            let spec = Spec {
+                name: ast.name.text.clone(),
+                motor,
+                inverter,
+                controller,
+            };
+            check_sampled_halls(&inverter_reader, &spec, &mut warnings);
+            let origins = Origins::new(ast, &whole_inverter, &whole_controller, warnings);
+            errors.into_result((spec, origins))
         }
         _ => Err(errors.finish().unwrap_or_else(|| {
             catalogue::internal(fallback, "a specification without errors is incomplete").into()
         })),
     }
+}
+
+/// Ripple above which Hall edges should be captured by a timer, over the mean torque: that of a drive with a timer.
+const MOST_RIPPLE: f64 = 0.03;
+
+/// Warns where Hall edges that are seen at samples only make the torque ripple.
+fn check_sampled_halls(reader: &Reader, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
+    let Some(ripple) = spec.sampled_ripple().filter(|ripple| *ripple > MOST_RIPPLE) else {
+        return;
+    };
+    let period = reader.part("f_pwm", || {
+        engineering(spec.inverter.pwm_period().recip(), "Hz")
+    });
+    let degrees = spec.motor.rated_turn(spec.inverter.t_s);
+    warnings.push(catalogue::sampled_halls(&period, degrees, ripple));
 }
 
 /// Fields that options need, and that are stated but in error.

@@ -66,7 +66,10 @@ impl Options for PiPwmSpec {
     const OWN: &'static [Row<Self>] = &[
         Row::of(
             rule::quantity("bandwidth", &[D::Frequency], 1.0, 1e5, "1 kHz")
-                .preset("1 kHz")
+                .by_default(
+                    "1/20 of the control frequency",
+                    &[("", "settles in the fewest periods with the delay of a step")],
+                )
                 .about("Crossover of the current loop"),
             |options| Some(number(options.bandwidth)),
         ),
@@ -113,7 +116,7 @@ impl Options for PiPwmSpec {
 
     /// Modulations of other controllers are known, but not available.
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
-        let bandwidth = reader.plain_quantity_or_preset(errors, "bandwidth");
+        let bandwidth = reader.plain_quantity(errors, "bandwidth");
         let integral_time = reader.plain_quantity(errors, "integral_time");
         let six_step: bool = reader.choice_or_preset(errors, "six_step", &[]);
         let feed_forward = reader.switch(errors, "feed_forward").unwrap_or(!six_step);
@@ -150,8 +153,9 @@ impl Options for PiPwmSpec {
         let common = read_common(reader, surroundings, traits, errors)?;
         refuse_held(reader, &common, errors);
         let time_constant = surroundings.inductance? / surroundings.resistance?;
+        let frequency = 1.0 / surroundings.t_s?;
         Some(Self {
-            bandwidth,
+            bandwidth: bandwidth.map_or(frequency / 20.0, |given| given.si),
             integral_time: integral_time.map_or(time_constant, |given| given.si),
             feed_forward: feed_forward && !six_step,
             six_step,

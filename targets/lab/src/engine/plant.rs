@@ -29,9 +29,10 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
                 offset: f64::from(sensor.offset),
                 most: inverter.amplifier_reach,
                 noise: 0.0,
-                instant: times.map_or(inverter.dead_time / 2.0, |times| {
-                    f64::from(place / times.converters) * times.conversion - times.lead
-                }),
+                instant: inverter.sampling_delay()
+                    + times.map_or(0.0, |times| {
+                        f64::from(place / times.converters) * times.conversion
+                    }),
             })
             .collect(),
         sensed: inverter.sensed_phases.phases().to_vec(),

@@ -1,0 +1,196 @@
+//! One disturbance at a time, at rated torque: the current stays what was asked for, with little ripple.
+
+use hexagen_codegen::spec::{Envelope, Spec};
+use hexagen_lab::closed_loop::{Measurement, measure};
+use hexagen_lab::engine::{
+    Model, MotorSource, PlantOptions, Prepared, SelectedMotor, prepare, run_of,
+};
+use hexagen_lab::period::degrees_per_period;
+use rayon::prelude::*;
+use std::env;
+
+/// Controllers with a modulator and an observer.
+const VARIANTS: [&str; 2] = ["pdcc", "pi-pwm"];
+
+/// Speeds, percent of the rated one.
+const SPEEDS: [u32; 4] = [10, 25, 60, 100];
+
+/// Dead time of the disturbances, second.
+const DEAD_TIME: f64 = 1e-6;
+
+/// What differs between plant and drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Disturbance {
+    Resistance(f64),
+    Inductance(f64),
+    Emf(f64),
+    Bus(f64),
+    /// Stated in the motor file, so the drive knows it.
+    StatedDeadTime,
+    UnstatedDeadTime,
+}
+
+use Disturbance::{Bus, Emf, Inductance, Resistance, StatedDeadTime, UnstatedDeadTime};
+
+const DISTURBANCES: [Disturbance; 9] = [
+    Resistance(0.5),
+    Resistance(2.0),
+    Inductance(0.75),
+    Inductance(1.3),
+    Emf(0.8),
+    Emf(1.2),
+    Bus(0.85),
+    StatedDeadTime,
+    UnstatedDeadTime,
+];
+
+/// Where more is asked than the motor's inductance allows: motor, disturbance, least torque and greatest ripple in
+/// percent. Each is reached by one of the controllers; nothing beyond them occurs.
+const MISSED: &[(&str, Disturbance, f64, f64)] = &[];
+
+impl Disturbance {
+    /// The plant options, on top of the drive's own plant.
+    fn plant(self, spec: &Spec) -> PlantOptions {
+        let mut plant = PlantOptions::default();
+        match self {
+            Resistance(scale) => plant.scale_r = Some(scale),
+            Inductance(scale) => plant.scale_l = Some(scale),
+            Emf(scale) => plant.scale_kb = Some(scale),
+            Bus(share) => plant.v_bus = Some(share * spec.inverter.v_bus),
+            StatedDeadTime => (),
+            UnstatedDeadTime => plant.dead_time = Some(spec.inverter.dead_time + DEAD_TIME),
+        }
+        plant
+    }
+
+    /// Torque over the demand at the demanded current.
+    fn torque(self) -> f64 {
+        match self {
+            Emf(scale) => scale,
+            _ => 1.0,
+        }
+    }
+
+    /// Speed up to which the disturbed plant's bus drives the whole current, rad/s.
+    fn reach(self, spec: &Spec, torque: f64) -> f64 {
+        let mut real = spec.clone();
+        let (motor, inverter) = (&mut real.motor, &mut real.inverter);
+        match self {
+            Resistance(scale) => motor.resistance *= scale,
+            Inductance(scale) => motor.inductance *= scale,
+            Emf(scale) => motor.emf_constant *= scale,
+            Bus(share) => inverter.v_bus *= share,
+            StatedDeadTime | UnstatedDeadTime => {
+                // Lost on either edge of a period.
+                inverter.v_bus *= 1.0 - 2.0 * DEAD_TIME / inverter.pwm_period();
+            }
+        }
+        let torque = torque * self.torque();
+        Envelope::of(&real).speed(torque).unwrap_or_default()
+    }
+
+    /// Least torque and greatest ripple, percent of the demand.
+    fn limits(self, spec: &Spec) -> [f64; 2] {
+        let fine = degrees_per_period(spec) <= 12.0;
+        match self {
+            UnstatedDeadTime => [96.0, 9.0],
+            _ => [99.0, if fine { 5.0 } else { 7.0 }],
+        }
+    }
+}
+
+/// A drive of a motor whose file states [`DEAD_TIME`], or as it is.
+fn drive(motor: &str, variant: &str, disturbance: Disturbance) -> Prepared {
+    let mut source = MotorSource::of_library(motor).expect("is in the library");
+    if disturbance == StatedDeadTime {
+        let is_other = |line: &&str| !line.starts_with("dead_time =");
+        let lines: Vec<&str> = source.text.lines().filter(is_other).collect();
+        let text = lines.join("\n") + "\n";
+        source.text = text.replacen("[inverter]\n", "[inverter]\ndead_time = \"1 us\"\n", 1);
+        assert!(source.text.contains("\ndead_time"), "{}", source.text);
+    }
+    prepare(&source, Some(variant)).expect("generates")
+}
+
+/// A point that is not right.
+struct Miss {
+    motor: String,
+    disturbance: Disturbance,
+    torque: f64,
+    ripple: f64,
+    text: String,
+}
+
+/// A run at a signed speed and a signed torque; none where the torque is right.
+fn miss(drive: &Prepared, disturbance: Disturbance, speed: u32, signs: [f64; 2]) -> Option<Miss> {
+    let spec = &drive.spec;
+    let omega = f64::from(speed) / 100.0 * spec.motor.rated_speed;
+    let demand = drive.demand();
+    if disturbance.reach(spec, demand) < omega {
+        return None;
+    }
+    let [direction, mode] = signs;
+    let torque = direction * mode * demand;
+    let plant = disturbance.plant(spec);
+    let params = plant.plant(drive).expect("is possible");
+    let run = run_of(spec, direction * omega, torque);
+    let set_point = plant.set_point(drive, torque);
+    let Measurement {
+        figures, tripped, ..
+    } = measure(&params, &run, drive.maker(Model::Fixed, set_point)).expect("runs");
+    let mean = figures.mean_torque_nm.filter(|_| tripped.is_none());
+    let torque = mean.map_or(0.0, |mean| 100.0 * mean / torque / disturbance.torque());
+    let ripple = figures.ripple_pp_pct.unwrap_or(f64::INFINITY);
+    let [least, most] = disturbance.limits(spec);
+    let is_right = torque >= least && torque <= 200.0 - least && ripple <= most;
+    let motor = drive.motor.clone();
+    let text = format!("{motor} {disturbance:?} {speed} % {signs:?}: {torque:.2} with {ripple:.2}");
+    (!is_right).then_some(Miss {
+        motor,
+        disturbance,
+        torque,
+        ripple,
+        text,
+    })
+}
+
+/// Directions and modes, motoring and braking: in a push two of the four, one of either.
+fn quadrants() -> Vec<[f64; 2]> {
+    let all = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
+    all[..if is_whole { 4 } else { 2 }].to_vec()
+}
+
+#[test]
+fn no_disturbance_changes_the_current_or_makes_it_ripple() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
+    let drives = motors.iter().flat_map(|motor| {
+        let drive = |variant, disturbance| drive(&motor.source.name, variant, disturbance);
+        VARIANTS.into_iter().flat_map(move |variant| {
+            DISTURBANCES.map(|disturbance| (drive(variant, disturbance), disturbance))
+        })
+    });
+    let drives: Vec<_> = drives.collect();
+    let misses = drives.par_iter().flat_map_iter(|(drive, disturbance)| {
+        SPEEDS.into_iter().flat_map(move |speed| {
+            let at = move |signs| miss(drive, *disturbance, speed, signs);
+            quadrants().into_iter().filter_map(at)
+        })
+    });
+    let misses: Vec<Miss> = misses.collect();
+    let is_known = |miss: &Miss| {
+        MISSED.iter().any(|(motor, disturbance, torque, ripple)| {
+            miss.motor == *motor
+                && miss.disturbance == *disturbance
+                && miss.torque >= *torque
+                && miss.ripple <= *ripple
+        })
+    };
+    let unknown = misses.iter().filter(|miss| !is_known(miss));
+    let unknown: Vec<&str> = unknown.map(|miss| miss.text.as_str()).collect();
+    assert!(unknown.is_empty(), "{unknown:#?}");
+    for (motor, disturbance, ..) in MISSED {
+        let here = |miss: &Miss| miss.motor == *motor && miss.disturbance == *disturbance;
+        assert!(misses.iter().any(here), "{motor} {disturbance:?} is right");
+    }
+}
