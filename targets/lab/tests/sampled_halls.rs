@@ -14,7 +14,7 @@ const SPEEDS: [f64; 6] = [0.90, 0.92, 0.94, 0.96, 0.98, 1.0];
 const FLOOR: f64 = 0.7;
 
 /// Greatest measured over stated ripple, beyond the floor.
-const BEYOND: f64 = 1.6;
+const BEYOND: f64 = 2.0;
 
 /// Greatest stated over measured ripple.
 const SHORT: f64 = 1.6;

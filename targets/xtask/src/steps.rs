@@ -273,11 +273,13 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         },
         step("pages of all motors", &pages),
         step(
-            "pairs of disturbances",
+            "disturbances, alone and in pairs",
             &[
                 "test",
                 "--package",
                 "hexagen-lab",
+                "--test",
+                "disturbed",
                 "--test",
                 "pairs",
                 "--",
