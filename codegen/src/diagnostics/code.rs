@@ -185,6 +185,8 @@ codes! {
     ConstantsApart = 617,
     /// An inertia with which the rated torque takes an unlikely time to rated speed.
     UnlikelyInertia = 618,
+    /// Constants without basis that agree under one reading, which is taken.
+    BasisByAgreement = 619,
     /// An internal error of the generator.
     Internal = 901,
 }
