@@ -628,6 +628,16 @@ kind = "pdcc"
     }
 
     #[test]
+    fn hall_angles_and_torque_constant_are_learnt_together() {
+        let bus = "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"65 V\"\nf_pwm";
+        let mut ast = parse_toml(&MOTOR.replace("f_pwm", bus), "motor.toml").expect("it parses");
+        let variant = "pdcc:emf=observer,hall_learning=on,torque_learning=on";
+        apply_variant(&mut ast, variant).expect("the variant parses");
+        let (spec, origins) = check(&ast).expect("it passes the checks");
+        generate(&spec, &origins).expect("each signal has a name of its own");
+    }
+
+    #[test]
     fn where_narrow_words_do_not_suffice_wide_ones_stand_with_the_reason() {
         let motor = parse_toml(
             &MOTOR.replace("adc_bits = 12", "adc_bits = 16"),

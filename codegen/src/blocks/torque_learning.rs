@@ -152,10 +152,10 @@ impl<'b> TorqueLearning<'b> {
         let least = l.number("light_least", l.volts_word(least), &doc);
         named! {
             let emf_now = self.k_along * rotor.step_angle;
-            let is_light = emf_now.abs().is_above(k_drop * j.abs() + least);
+            let is_unloaded = emf_now.abs().is_above(k_drop * j.abs() + least);
             let is_free = (k_free * v_bus).is_above((emf_now + error).abs());
             let is_known = self.bus_is_fresh.read().is_at_least(1);
-            let light_new = (is_light & is_free & is_known).choose((self.light.read() + 1).min(SETTLED), 0);
+            let light_new = (is_unloaded & is_free & is_known).choose((self.light.read() + 1).min(SETTLED), 0);
         }
         (self.light, light_new)
     }

@@ -185,8 +185,10 @@ codes! {
     ConstantsApart = 617,
     /// An inertia with which the rated torque takes an unlikely time to rated speed.
     UnlikelyInertia = 618,
+    /// Constants without basis that agree under one reading, which is taken.
+    BasisByAgreement = 619,
     /// Hall edges that are seen at samples only make the torque ripple.
-    SampledHalls = 619,
+    SampledHalls = 620,
     /// An internal error of the generator.
     Internal = 901,
 }

@@ -238,13 +238,13 @@ impl Code {
                 "Torque is EMF constant times current; rated torque and current say another constant than the one that is stated, by more than 15 %.",
                 "back_emf = \"0.1648 V/(rad/s) phase peak\"\nrated_torque = \"3.3 Nm\"",
                 "back_emf = \"0.1648 V/(rad/s) line_to_line peak\"\nrated_torque = \"3.3 Nm\"",
-                "Try the reading that the message says would fit, and compare with the data sheet.",
+                "The message lists the readings that fit. Look up in the data sheet which of them is meant, and write that one.",
             ),
             Self::TorqueConstantContradiction => say(
                 "Torque constant and EMF constant are one property of a motor in two units; these differ by more than 15 %.",
                 "rated_speed = \"2000 rpm\"\ntorque_constant = \"0.274 Nm/A\"",
                 "rated_speed = \"2000 rpm\"\ntorque_constant = \"0.165 Nm/A block_mean\"",
-                "Say the basis of the torque constant: block_mean, per_peak_ampere or per_rms_ampere.",
+                "Look up in the data sheet of which current the torque constant is (block_mean, per_peak_ampere or per_rms_ampere) and of which voltage the EMF constant, and write both.",
             ),
             Self::SpeedContradiction => say(
                 "A motor without load turns until its EMF is the voltage; speed constant or no-load speed say another EMF constant than the one that is stated.",
@@ -482,7 +482,7 @@ impl Code {
                 "EMF and torque constant are one number in SI units. Of a sinusoidal motor only the means over block commutation are, as Maxon and others print them; the peak is pi/3 times that, 4.7 % more.",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"",
                 "emf_shape = \"sinusoidal\"\ntorque_constant = \"0.1648 Nm/A\"\nback_emf = \"0.1648 V/(rad/s) block_mean\"",
-                "Write `block_mean` in place of `line_to_line peak` in `back_emf` or `speed_constant`. A `torque_constant` without basis makes this warning, too; where it is per ampere of a sine, say `per_peak_ampere` or `per_rms_ampere` instead.",
+                "Look up in the data sheet which voltage the EMF constant refers to, and which current the torque constant, and write both. A `torque_constant` without basis makes this warning, too; with one that says its basis it goes.",
             ),
             Self::RatingBeyondBus => say(
                 "At rated speed and torque the drive needs more voltage than its legs reach: EMF, resistive drop and what turns the current, at the angle where they take most. The bus cuts the current's shape there.",
@@ -530,7 +530,13 @@ impl Code {
                 "Two fields state one EMF constant, each with its basis, and they differ by more than a data sheet rounds: a basis is probably not what the sheet means.",
                 "emf_shape = \"sinusoidal\"\nback_emf = \"0.1648 V/(rad/s) line_to_line peak\"\ntorque_constant = \"0.156 Nm/A per_peak_ampere\"",
                 "emf_shape = \"sinusoidal\"\nback_emf = \"0.1648 V/(rad/s) line_to_line peak\"\ntorque_constant = \"0.156 Nm/A block_mean\"",
-                "Look up of which current or voltage the constants are, and write the basis that the message names, if it is that one; else leave out the constant that you trust less.",
+                "Look up in the data sheet of which current or voltage the constants are, and write those bases; where it does not say, leave out the constant that you trust less.",
+            ),
+            Self::BasisByAgreement => say(
+                "No constant says its basis, and only under one reading do they state one EMF constant. The drive is generated with that reading.",
+                "emf_shape = \"sinusoidal\"\nspeed_constant = \"58 rpm/V\"\ntorque_constant = \"0.1646 Nm/A\"",
+                "emf_shape = \"sinusoidal\"\nspeed_constant = \"58 rpm/V block_mean\"\ntorque_constant = \"0.1646 Nm/A block_mean\"",
+                "Look up in the data sheet of which voltage and current the constants are, and write those bases. Where several readings or none bring the constants together, this is the error HX0205.",
             ),
             Self::UnlikelyInertia => say(
                 "The inertia times the rated speed over the rated torque is the time from rest to rated speed. A bare rotor takes some milliseconds, a vehicle some seconds: a time far from both is rather a wrong unit. Data sheets state inertias in g cm2, kg cm2 and kg m2, a thousand and ten thousand apart; what a gear moves counts by the square of its ratio.",

@@ -13,6 +13,7 @@ use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
 use headless_chrome::protocol::cdp::Input::DispatchTouchEventTypeOption::{
     TouchEnd, TouchMove, TouchStart,
 };
+use hexagen_codegen::spec::{CurrentSensing, EmfShape, RotorSensing, Spec};
 use hexagen_host::render;
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Page, reproduction_page, results_page};
@@ -42,10 +43,15 @@ fn both(width: u32, scheme: &str) -> impl Iterator<Item = Open> {
     files.filter_map(move |file| open(file, width, scheme))
 }
 
-/// Opens a page's file at each width, where nothing overlaps.
+/// Opens a page's file at each width, on a telephone in the dark, too: nothing overlaps, and texts are legible.
 fn assert_nothing_overlaps(file: &Path) {
-    for width in [390, 768, 1280] {
-        let Some(page) = load(file, width, "light") else {
+    for (width, scheme) in [
+        (390, "dark"),
+        (390, "light"),
+        (768, "light"),
+        (1280, "light"),
+    ] {
+        let Some(page) = load(file, width, scheme) else {
             return;
         };
         // Draws them all.
@@ -59,6 +65,8 @@ fn assert_nothing_overlaps(file: &Path) {
         page.assert_none("crowdedAxes()");
         page.assert_none("namelessRows()");
         page.assert_none("brokenWords()");
+        page.assert_none("faintTexts()");
+        assert_eq!(page.ask("isDark()"), Value::from(scheme == "dark"));
         page.assert_no_errors();
     }
 }
@@ -67,6 +75,40 @@ fn assert_nothing_overlaps(file: &Path) {
 fn nothing_overlaps_at_three_widths() {
     assert_nothing_overlaps(&REPORT);
     assert_nothing_overlaps(&EXPERIMENT);
+}
+
+/// The real page of a motor of the library.
+fn page_of(motor: &str) -> PathBuf {
+    let plan = Plan::of(motor, None).expect("a motor of the library");
+    let (data, _) = plan.run(&()).expect("every variant runs");
+    file(&results_page(&data), &format!("motors/{motor}"))
+}
+
+/// What a drive is made for.
+type Kind = fn(&Spec) -> bool;
+
+/// A sinusoidal motor with sensors in the phases, one with an angle sensor, and one with shunts in the low legs.
+#[test]
+fn real_pages_of_three_kinds_of_drives_are_right() {
+    let kinds: [(&str, Kind); 3] = [
+        ("teknic-m2310p", |spec| {
+            spec.motor.emf_shape == EmfShape::Sinusoidal
+        }),
+        ("mit-mini-cheetah", |spec| {
+            matches!(spec.inverter.rotor_sensing, RotorSensing::Angle(_))
+        }),
+        ("hoverboard-hub", |spec| {
+            matches!(spec.inverter.current_sensing, CurrentSensing::LowSide(_))
+        }),
+    ];
+    for (motor, is_kind) in kinds {
+        let found = SelectedMotor::find(motor, &PlantOptions::default()).expect("is there");
+        assert!(
+            is_kind(&found.prepare(None).expect("a drive").spec),
+            "{motor}"
+        );
+        assert_nothing_overlaps(&page_of(motor));
+    }
 }
 
 /// Greatest size of a library motor's page in bytes, well below a megabyte.
@@ -79,9 +121,7 @@ fn every_motors_page_is_small_and_nothing_overlaps() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("is read");
     for motor in motors {
         let name = motor.source.name;
-        let plan = Plan::of(&name, None).expect("a motor of the library");
-        let (data, _) = plan.run(&()).expect("every variant runs");
-        let file = file(&results_page(&data), "motors");
+        let file = page_of(&name);
         let size = fs::metadata(&file).expect("it is there").len();
         println!("{name}: {size} bytes");
         assert!(size <= MOST, "{name}: {size} bytes of at most {MOST}");

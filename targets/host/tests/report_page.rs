@@ -53,6 +53,48 @@ fn the_printed_table_of_variants_keeps_to_a_hundred_columns() {
     }
 }
 
+/// Held furthest first; of those that hold as far, the smoothest at the highest speed.
+#[test]
+fn the_printed_table_has_a_row_per_variant_best_first() {
+    let mut data = DATA.clone();
+    data.variants.retain(|variant| !variant.runs.is_empty());
+    let count = data.variants.len();
+    assert!(count > 2, "{count} variants have no order");
+    for (place, variant) in data.variants.iter_mut().enumerate() {
+        let run = &mut variant.runs[0];
+        let limit = run.limit.as_mut().expect("was scanned");
+        // The last holds furthest and ripples most, the others hold as far, ever smoother.
+        limit.limit_pct = Some(if place + 1 == count { 150.0 } else { 100.0 });
+        let top = run.points.last_mut().expect("was run");
+        let ripple = if place + 1 == count {
+            90.0
+        } else {
+            50.0 - place as f64
+        };
+        top.figures.ripple_pp_pct = Some(ripple);
+    }
+    let mut expected: Vec<String> = data
+        .variants
+        .iter()
+        .rev()
+        .map(|of| of.label.clone())
+        .collect();
+    let rows = |data: &Results| -> Vec<String> {
+        let table = variants_table(data);
+        let rows = table.groups.iter().flat_map(|group| &group.rows);
+        rows.map(|row| row[0].text.clone()).collect()
+    };
+    assert_eq!(rows(&data), expected);
+    // The order is not that of the data.
+    data.variants.reverse();
+    assert_eq!(rows(&data), expected);
+    // One that does not hold the torque at all is the last.
+    let worst = &mut data.variants[0].runs[0];
+    worst.limit.as_mut().expect("was scanned").limit_pct = None;
+    expected.rotate_left(1);
+    assert_eq!(rows(&data), expected);
+}
+
 #[test]
 fn page_is_complete_in_itself_and_well_formed() {
     page_support::assert_refers_to_nothing_outside(&PAGE);

@@ -6,7 +6,9 @@
 
 mod compile_time;
 mod editors;
+mod install;
 mod packages;
+mod readme;
 mod step;
 mod steps;
 
@@ -25,11 +27,11 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Format, contents of packages, lints, documentation and all tests
+    /// Format, contents of packages, lints, documentation, all tests, and the README's first drive
     Test,
     /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
-    /// all products of options, the pages of all motors, `commands`, `programs`, `editors`, and the
-    /// proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
+    /// all products of options, the pages of all motors, `commands`, `programs`, `editors`, the
+    /// installed program, and the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]

@@ -1,7 +1,7 @@
 //! The steps of each task: cargo commands with their prerequisites.
 
 use crate::step::{Step, root, step};
-use crate::{editors, packages};
+use crate::{editors, install, packages, readme};
 use std::env;
 use std::process::Command;
 use std::time::Instant;
@@ -51,6 +51,7 @@ pub fn checks() -> Result<Vec<Step>, String> {
                 "crate_of_drives",
             ],
         ),
+        readme::first_drive()?,
         on_target("firmware", &[]),
         on_target("pil", &[]),
         on_target("cost", &[]),
@@ -290,6 +291,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         bench("commands", &[]),
         on_target("programs", &[]),
         editors::session(),
+        install::program(),
         step("proofs", &prove),
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),

@@ -2,7 +2,7 @@
 
 use super::internal;
 use super::part::{Part, with_parts};
-use super::values::per_krpm;
+use super::values::{in_field, per_krpm, with_meanings};
 use crate::diagnostics::{
     Code, Diagnostic, Location, at_least, at_most, engineering, list, percent, rpm, rpm_at_most,
     significant,
@@ -329,7 +329,7 @@ pub fn contradiction(of: &Contradiction) -> Diagnostic {
             .iter()
             .map(|(change, value)| format!("{change} ({value})"))
             .collect();
-        format!("it would fit with {}", fits.join(", or with "))
+        format!("readings that fit: {}; {LOOK_UP}", fits.join(", "))
     };
     let gives = format!("{} gives {shapes}{at}", of.stated.quoted());
     let told = if of.culprit.field == claimed.field {
@@ -435,7 +435,7 @@ pub fn constants_apart([taken, other]: [&Part; 2], ratio: f64, changes: &[String
         "no other basis brings them together, so check the numbers against the data sheet"
             .to_owned()
     } else {
-        format!("they would agree with {}", changes.join(", or with "))
+        format!("readings that agree: {}; {LOOK_UP}", changes.join(", "))
     };
     with_parts(
         Diagnostic::new(
@@ -450,6 +450,58 @@ pub fn constants_apart([taken, other]: [&Part; 2], ratio: f64, changes: &[String
             ),
         ),
         &[other],
+    )
+}
+
+/// What to do where several readings are possible: which one is meant only the data sheet says.
+const LOOK_UP: &str = "look up in the data sheet which is meant, and write that";
+
+/// Constants without basis that agree under one reading, `reading`.
+pub fn basis_by_agreement(parts: &[&Part], reading: &str) -> Diagnostic {
+    let (first, rest) = (parts[0], &parts[1..]);
+    let others: Vec<String> = rest.iter().map(|part| part.quoted()).collect();
+    with_parts(
+        Diagnostic::new(
+            Code::BasisByAgreement,
+            &first.location,
+            format!(
+                "`{}`: {} and {} say no basis; they agree, and are taken, with {reading}; look up in the data sheet whether that is meant, and write it",
+                first.field,
+                first.given,
+                others.join(" and "),
+            ),
+        ),
+        rest,
+    )
+}
+
+/// Constants without basis that agree under several readings, `agreements`, or under none; `forms`: what the first of
+/// them may mean.
+pub fn bases_in_doubt(
+    parts: &[&Part],
+    agreements: &[String],
+    forms: &[(String, String)],
+) -> Diagnostic {
+    let (first, rest) = (parts[0], &parts[1..]);
+    let others: Vec<String> = rest.iter().map(|part| part.quoted()).collect();
+    let agree = if agreements.is_empty() {
+        "agree under no reading".to_owned()
+    } else {
+        format!("agree under several readings: {}", agreements.join(", or "))
+    };
+    with_parts(
+        Diagnostic::new(
+            Code::MissingBasis,
+            &first.location,
+            format!(
+                "`{}`: {} has no basis, nor has {}, and they {agree}; {LOOK_UP}: {}",
+                first.field,
+                first.given,
+                others.join(", nor "),
+                with_meanings(&in_field(&first.location, first.field, forms)),
+            ),
+        ),
+        rest,
     )
 }
 
@@ -477,7 +529,7 @@ pub fn mean_for_peak([stated, other]: [&Part; 2], peak: f64, true_peak: f64) -> 
             Code::MeanForPeak,
             &stated.location,
             format!(
-                "`{}`: {} and {} are one number, as those of a sinusoidal motor are where both are means over block commutation; if so, say `block_mean`: the line-to-line peak is then {} in place of {}",
+                "`{}`: {} and {} are one number, as those of a sinusoidal motor are where both are means over block commutation; such a reading, `block_mean`, means a line-to-line peak of {} in place of {}; {LOOK_UP}",
                 stated.field,
                 stated.given,
                 other.quoted(),

@@ -471,7 +471,11 @@ pub(crate) fn with_meanings<S: AsRef<str>>(words: &[(S, S)]) -> String {
 }
 
 /// Values as they are written at a place: in a file with their field, for TOML has quotes.
-fn in_field(at: &Location, field: &str, forms: &[(String, String)]) -> Vec<(String, String)> {
+pub(super) fn in_field(
+    at: &Location,
+    field: &str,
+    forms: &[(String, String)],
+) -> Vec<(String, String)> {
     forms
         .iter()
         .map(|(value, meaning)| (written(at, field, value), meaning.clone()))

@@ -5,6 +5,7 @@
 //! the commonest mistake of this field. One contradiction is one error, at the value that is most
 //! likely wrong; it tells which other reading would fit.
 
+use super::agreement::{self, ROUNDED};
 use super::emf::{Emf, Reading, words};
 use super::inverter::Inverter;
 use super::motor::Motor;
@@ -20,9 +21,6 @@ const TOLERANCE: f64 = 0.15;
 
 /// So near are two printed constants that are one number.
 const EQUAL: f64 = 0.01;
-
-/// So near are two constants whose bases are right: no basis is so near to another.
-const ROUNDED: f64 = 0.04;
 
 /// Something that follows from the phase constant and is stated, too.
 struct Claim<'a> {
@@ -85,7 +83,9 @@ pub(super) fn check(
         claims.iter().partition(|claim| claim.agrees(phase));
     if failing.is_empty() {
         let apart = || apart(stated, rest, shape, pole_pairs);
-        warnings.extend(mean_for_peak(stated, rest, shape, pole_pairs).or_else(apart));
+        let taken = agreement::warning(&motor.emf, shape)
+            .or_else(|| mean_for_peak(stated, rest, shape, pole_pairs));
+        warnings.extend(taken.or_else(apart));
         return false;
     }
     // An odd one must be among those that do not fit.
@@ -273,18 +273,11 @@ fn claims<'a>(
 
 /// The other bases that a constant may have.
 fn other_readings(stated: &Emf) -> impl Iterator<Item = Reading> + Clone {
-    use Reading::{BlockMean, LinePeak, LineRms, PerPeakAmpere, PerRmsAmpere, PhasePeak, PhaseRms};
-    let readings: &[Reading] = match stated.given.dimension {
-        Some(Dimension::EmfConstant) => &[PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean],
-        Some(Dimension::FluxLinkage) => &[PhasePeak, PhaseRms],
-        Some(Dimension::SpeedConstant) => &[LinePeak, LineRms, BlockMean],
-        _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
-    };
     let taken = stated.reading;
     // A voltage from peak to peak was halved: it has no root mean square.
     let is_double = stated.given.basis.contains(&Basis::PeakToPeak);
-    let is_peak = |reading: Reading| matches!(reading, PhasePeak | LinePeak);
-    let others = readings.iter().copied();
+    let is_peak = |reading: Reading| matches!(reading, Reading::PhasePeak | Reading::LinePeak);
+    let others = stated.readings().iter().copied();
     others.filter(move |reading| *reading != taken && (!is_double || is_peak(*reading)))
 }
 

@@ -4,6 +4,7 @@
 //! The phase constant is the peak EMF of a phase of the equivalent star over mechanical speed. Every
 //! basis is that times a number, which follows from the shape of the EMF.
 
+use super::agreement;
 use crate::diagnostics::{Collector, catalogue, engineering};
 use crate::spec::EmfShape;
 use crate::spec::ast::Basis;
@@ -121,6 +122,25 @@ impl Emf<'_> {
         }
     }
 
+    /// What a constant of its dimension may refer to.
+    pub fn readings(&self) -> &'static [Reading] {
+        use Reading::{
+            BlockMean, LinePeak, LineRms, PerPeakAmpere, PerRmsAmpere, PhasePeak, PhaseRms,
+        };
+        match self.given.dimension {
+            Some(Dimension::EmfConstant) => &[PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean],
+            Some(Dimension::FluxLinkage) => &[PhasePeak, PhaseRms],
+            Some(Dimension::SpeedConstant) => &[LinePeak, LineRms, BlockMean],
+            _ => &[BlockMean, PerPeakAmpere, PerRmsAmpere],
+        }
+    }
+
+    /// Whether neither its words nor its unit say what it refers to.
+    pub fn is_open(&self) -> bool {
+        let says = |basis: &Basis| *basis != Basis::LineToLine;
+        self.given.dimension != Some(Dimension::FluxLinkage) && !self.given.basis.iter().any(says)
+    }
+
     /// Peak phase EMF of the equivalent star over mechanical speed, V s/rad.
     pub fn phase_constant(&self, shape: EmfShape, pole_pairs: u32) -> f64 {
         self.constant(pole_pairs) / self.reading.factor(shape)
@@ -149,8 +169,8 @@ pub(super) fn read<'a>(
     if is_readable {
         let mut all: Vec<Emf> = all.into_iter().flatten().collect();
         // A stated basis is more than a usual one.
-        all.sort_by_key(|stated| stated.given.basis.is_empty());
-        all
+        all.sort_by_key(Emf::is_open);
+        agreement::resolve(all, shape, errors)
     } else {
         Vec::new()
     }
@@ -311,6 +331,13 @@ fn form(
         },
     );
     (with_words(given, &words), meaning)
+}
+
+/// The readings of a constant that is open, as they are written, and what each would mean.
+pub(super) fn forms(stated: &Emf, shape: EmfShape) -> Vec<(String, String)> {
+    let all = stated.readings().iter();
+    all.map(|&reading| form(&stated.given, reading, false, Some(shape)))
+        .collect()
 }
 
 /// The readings of an EMF constant that does not say its basis, each with the torque per ampere of

@@ -3,6 +3,7 @@
 //! Single fields first (`super::reader`), then motor, inverter and controller, then their relations
 //! (`relations`, `consistency`). A value in error never causes a second error.
 
+mod agreement;
 mod angle;
 mod consistency;
 mod controller;

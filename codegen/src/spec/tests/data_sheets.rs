@@ -396,18 +396,20 @@ fn a_flat_motor_as_its_catalogue_words_it() {
     // What the motor needs at its no-load speed is the 24 V, but for friction: 3 V of EMF less.
     let line_mean = printed * 5600.0 * PI / 30.0;
     assert!((line_mean / 24.0 - 1.0).abs() < 0.02, "{line_mean}");
-    // Taken for a peak, the words are missed.
+    // Without its words, the two agree only as what they are.
     let is_warned = |text: &str| {
         let ast = parse_toml(&newcomer(text, 24, 8), "ec45.toml").expect("is TOML");
         let (spec, origins) = check(&ast).expect("passes");
         let warnings = warnings(&spec, &origins, &[]);
         let mut codes = warnings.iter().map(|warning| warning.code);
         (
-            codes.any(|code| code == Code::MeanForPeak),
+            codes.any(|code| code == Code::BasisByAgreement),
             spec.motor.emf_constant,
         )
     };
-    assert!(is_warned(&EC_45.replace(" block_mean", "")).0);
+    let (warned, constant) = is_warned(&EC_45.replace(" block_mean", ""));
+    assert!(warned);
+    near(constant, motor.emf_constant);
     let of_peak = EC_45
         .replace("mNm/A block_mean", "mNm/A per_peak_ampere")
         .replace("rpm/V block_mean", "rpm/V");
@@ -418,6 +420,62 @@ fn a_flat_motor_as_its_catalogue_words_it() {
     let (warned, constant) = is_warned(&EC_45.replace("rpm/V block_mean", "rpm/V"));
     assert!(!warned);
     near(constant, 40.4e-3 * PI / 3.0 / 3_f64.sqrt());
+}
+
+/// Two constants of which none says its basis: one reading is taken, several and none are refused.
+#[test]
+fn constants_without_basis_are_taken_only_where_one_reading_fits() {
+    let told = |torque: f64, shape: &str| {
+        // 236 rpm/V are 40.46 mV/(rad/s).
+        let text = format!(
+            "pole_pairs = 8\nresistance = \"0.573 ohm terminal\"\ninductance = \"0.301 mH terminal\"\n\
+             speed_constant = \"236 rpm/V\"\ntorque_constant = \"{} mNm/A\"\nemf_shape = \"{shape}\"\n\
+             rated_current = \"3.29 A peak\"\nrated_speed = \"2000 rpm\"",
+            40.463 * torque
+        );
+        let ast = parse_toml(&newcomer(&text, 24, 8), "ec45.toml").expect("is TOML");
+        match check(&ast) {
+            Ok((spec, origins)) => {
+                let all = warnings(&spec, &origins, &[]);
+                all.iter().map(ToString::to_string).collect::<String>()
+            }
+            Err(errors) => errors.to_string(),
+        }
+    };
+    let words = |speed: &str, torque: &str| {
+        format!("`speed_constant` as `{speed}` and `torque_constant` as `{torque}`")
+    };
+    // Torque over EMF constant, of a sine, under each pair of readings.
+    for (ratio, speed, torque) in [
+        (1.0, "block_mean", "block_mean"),
+        (0.866, "line_to_line peak", "per_peak_ampere"),
+        (1.732, "line_to_line rms", "per_rms_ampere"),
+    ] {
+        let told = told(ratio, "sine");
+        assert!(told.contains("warning[HX0619]"), "{told}");
+        assert!(told.contains(&words(speed, torque)), "{told}");
+    }
+    let several = told(1.2247, "sine");
+    assert!(several.contains("error[HX0205]"), "{several}");
+    for reading in [
+        words("line_to_line peak", "per_rms_ampere"),
+        words("line_to_line rms", "per_peak_ampere"),
+    ] {
+        assert!(several.contains(&reading), "{several}");
+    }
+    let none = told(3.0, "sine");
+    assert!(none.contains("error[HX0205]"), "{none}");
+    assert!(none.contains("agree under no reading"), "{none}");
+    // What each reading would mean.
+    for told in [several, none] {
+        assert!(
+            told.contains("rms\"` (root mean square between two terminals: "),
+            "{told}"
+        );
+        assert!(told.contains("look up in the data sheet"), "{told}");
+    }
+    // All that agree mean the same.
+    assert_eq!(told(1.0, "trapezoid"), "");
 }
 
 /// Teknic's Hudson M-2311P: 8 poles, peak volts between lines, ounce-inches per ampere, which agree
@@ -567,7 +625,7 @@ fn a_rating_a_little_beyond_the_bus_is_a_warning_with_what_the_bus_allows() {
     let [halls, told] = told.as_slice() else {
         panic!("{told:?}");
     };
-    assert!(halls.contains("warning[HX0619]"), "{halls}");
+    assert!(halls.contains("warning[HX0620]"), "{halls}");
     assert!(
         told.contains("warning[HX0604]: `rated_speed`: 5300 rpm: there the bus of 24 V drives the whole current up to "),
         "{told}"

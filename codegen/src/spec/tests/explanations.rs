@@ -49,7 +49,9 @@ fn with_lines(lines: &str, other: &str) -> String {
             (Some(at), _) => all.insert(at, line),
             (None, Some(section)) => {
                 // One of two that say the same.
-                all.retain(|there| name != "adc_gain" || !there.starts_with("adc_range"));
+                for (one, other) in [("adc_gain", "adc_range"), ("speed_constant", "back_emf")] {
+                    all.retain(|there| name != one || !there.starts_with(other));
+                }
                 let head = all
                     .iter()
                     .position(|there| *there == format!("[{section}]"));

@@ -269,6 +269,22 @@ fn no_remedy_offers_a_basis_that_was_not_named() {
         let told = changed("0.1648 V/(rad/s) line_to_line peak", value);
         assert!(told.ends_with(&format!("; {remedy}")), "{value}: {told}");
     }
+    // Readings that fit are facts; which one is meant the data sheet says.
+    let emf = "\"0.1648 V/(rad/s) line_to_line peak\"";
+    for (value, code) in [
+        (
+            "\"0.0824 V/(rad/s) line_to_line peak\"\nrated_torque = \"3.3 Nm\"".to_owned(),
+            "HX0303",
+        ),
+        (format!("{emf}\nspeed_constant = \"78 rpm/V\""), "HX0318"),
+    ] {
+        let told = changed(emf, &value);
+        let told = told.lines().next().unwrap_or_default();
+        assert!(told.contains(code), "{told}");
+        assert!(told.contains("; readings that fit: `"), "{told}");
+        let remedy = "; look up in the data sheet which is meant, and write that";
+        assert!(told.ends_with(remedy), "{told}");
+    }
     let told = changed("resistance = \"135 mohm per_phase\"\n", "");
     assert!(
         told.ends_with(&format!("add it, for example {BOTH}")),

@@ -1,11 +1,11 @@
 //! The program's arguments, as clap reads them.
 
-use super::output::COLUMNS;
 use super::{Failure, quantity, tell_warnings, warn};
 use crate::commands::{
     advise, boards, check, compare, completions, explain, faults, generate, halls, limit, motors,
     new, prove, replay, report, reproduce, simulate, verify,
 };
+use crate::render::lines::COLUMNS;
 use clap::{Args, Parser, Subcommand};
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{EmfShape, KINDS, option_help};
@@ -249,14 +249,14 @@ pub struct PlantArguments {
     /// three for Ha, Hb and Hc; positive is late in forward rotation
     #[arg(long, value_name = "ANGLE", value_parser = quantity::hall_error, allow_hyphen_values = true)]
     pub hall_error: Option<[f64; 3]>,
-    /// Inertia of rotor and load: a free shaft that starts at the given speed
-    #[arg(long, value_name = "KGM2", value_parser = quantity::inertia, allow_hyphen_values = true)]
+    /// Inertia of rotor and load as `"120 g cm2"`: a free shaft that starts at the given speed
+    #[arg(long, value_name = "INERTIA", value_parser = quantity::inertia, allow_hyphen_values = true)]
     pub inertia: Option<f64>,
-    /// Load torque that opposes the motion
-    #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
+    /// Load torque as `0.5Nm`, which opposes the motion
+    #[arg(long, value_name = "TORQUE", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub load: Option<f64>,
-    /// Initial electrical angle in rad: one run instead of three [default: 0.1, 0.117, 0.134]
-    #[arg(long, value_name = "RAD", value_parser = quantity::radians, allow_hyphen_values = true)]
+    /// Initial electrical angle as `30deg`: one run instead of three [default: 0.1, 0.117, 0.134 rad]
+    #[arg(long, value_name = "ANGLE", value_parser = quantity::radians, allow_hyphen_values = true)]
     pub start_angle: Option<f64>,
 }
 
@@ -385,8 +385,8 @@ pub struct RunArguments {
     /// Model of the controller
     #[arg(long, value_enum, default_value_t)]
     pub model: ModelName,
-    /// Torque demand, negative for braking [default: rated torque, limited by max_current]
-    #[arg(long, value_name = "NM", value_parser = quantity::torque, allow_hyphen_values = true)]
+    /// Torque demand as `3.3Nm`, negative for braking [default: rated torque, limited by max_current]
+    #[arg(long, value_name = "TORQUE", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub torque: Option<f64>,
     /// Changes of the plant
     #[command(flatten)]
@@ -438,7 +438,15 @@ pub fn parse_rpm(text: &str) -> Result<f64, String> {
     quantity::rpm(text)
 }
 
-/// Newton metres of a text; other units of torque are converted.
+/// Revolutions per minute of a speed with its unit.
+///
+/// # Errors
+/// Why the text is not a speed.
+pub fn parse_speed(text: &str) -> Result<f64, String> {
+    quantity::speed(text)
+}
+
+/// Newton metres of a torque with its unit.
 ///
 /// # Errors
 /// Why the text is not a torque.

@@ -10,14 +10,15 @@ mod output;
 mod progress;
 mod quantity;
 
+pub use crate::render::lines::{paragraph, verdict_lines, wrapped_row};
 pub use arguments::{
     Arguments, Command, DriveArguments, Emit, PlantArguments, RunArguments, Selection, parse_rpm,
-    parse_torque,
+    parse_speed, parse_torque,
 };
 pub use failure::{ErrorAlone, Failure};
 pub use output::{
-    note, paragraph, print_blocks, print_json, print_table, print_text, tell_warnings, warn,
-    wrapped_row, write_file,
+    note, print_blocks, print_json, print_table, print_text, print_verdict, tell_warnings, warn,
+    write_file,
 };
 pub use progress::{Bar, spinner};
 

@@ -25,45 +25,54 @@ pub fn print_text(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Most columns of a line.
-pub(super) const COLUMNS: usize = 100;
-
-/// A row in lines of at most 100 columns, the further ones below its text.
-pub fn wrapped_row(row: &str) -> String {
-    filled(row, "            ")
+/// Prints lines of which the first ends in a verdict, whose word has a colour on a terminal.
+///
+/// # Errors
+/// As [`print_text`].
+pub fn print_verdict(lines: &[String]) -> Result<(), Failure> {
+    let text = lines.join("\n");
+    print_text(&if terminal::is_coloured() {
+        verdict_coloured(&text)
+    } else {
+        text
+    })
 }
 
-/// A paragraph in such lines.
-pub fn paragraph(text: &str) -> String {
-    filled(text, "")
+/// A text with the verdict behind the name that it begins with in colour.
+fn verdict_coloured(text: &str) -> String {
+    const VERDICTS: [(&str, &str); 4] = [
+        ("does not work", RED),
+        ("does not hold its rating", RED),
+        ("works, but", YELLOW),
+        ("works", GREEN),
+    ];
+    let found = text.match_indices(": ").find_map(|(at, colon)| {
+        let begin = at + colon.len();
+        let is_next = |word: &&str| {
+            let next = text.get(begin..begin + word.len());
+            next.is_some_and(|next| next.eq_ignore_ascii_case(word))
+        };
+        let (word, colour) = VERDICTS.iter().find(|(word, _)| is_next(word))?;
+        Some((begin, begin + word.len(), colour))
+    });
+    found.map_or_else(
+        || text.to_owned(),
+        |(begin, end, colour)| painted(text, begin, end, colour),
+    )
 }
 
-/// A word that is longer than a line stays whole.
-fn filled(text: &str, indent: &str) -> String {
-    let options = textwrap::Options::new(COLUMNS)
-        .subsequent_indent(indent)
-        .break_words(false)
-        .word_splitter(textwrap::WordSplitter::NoHyphenation);
-    textwrap::fill(&glued(text), options).replace(GLUE, " ")
-}
+const RED: &str = "\x1b[1;31m";
+const YELLOW: &str = "\x1b[1;33m";
+const GREEN: &str = "\x1b[1;32m";
 
-/// A space at which no line ends.
-const GLUE: char = '\u{a0}';
-
-/// The text with its numbers glued to their units.
-fn glued(text: &str) -> String {
-    let letters: Vec<char> = text.chars().collect();
-    let is_unit = |letter: &char| letter.is_alphabetic() || *letter == '%';
-    let glue = |(place, &letter): (usize, &char)| {
-        let before = place.checked_sub(1).map(|before| letters[before]);
-        let is_behind_number = before.is_some_and(|before| before.is_ascii_digit());
-        if letter == ' ' && is_behind_number && letters.get(place + 1).is_some_and(is_unit) {
-            GLUE
-        } else {
-            letter
-        }
-    };
-    letters.iter().enumerate().map(glue).collect()
+/// A text with a part of it in colour.
+fn painted(text: &str, begin: usize, end: usize, colour: &str) -> String {
+    format!(
+        "{}{colour}{}\x1b[0m{}",
+        &text[..begin],
+        &text[begin..end],
+        &text[end..]
+    )
 }
 
 /// Prints lines to stderr, with colours on a terminal (unless `NO_COLOR` is set). There is no place
@@ -75,7 +84,7 @@ pub fn note(text: &str) {
 
 /// A message's line with its severity in colour: `file:1:2: error[HX0205]: …`, `warning: …`.
 fn coloured(line: &str) -> String {
-    const SEVERITIES: [(&str, &str); 2] = [("error", "\x1b[1;31m"), ("warning", "\x1b[1;33m")];
+    const SEVERITIES: [(&str, &str); 2] = [("error", RED), ("warning", YELLOW)];
     let found = SEVERITIES.iter().find_map(|(word, colour)| {
         let begin = if line.starts_with(word) {
             0
@@ -85,14 +94,9 @@ fn coloured(line: &str) -> String {
         let end = begin + line[begin..].find(':')?;
         Some((begin, end, colour))
     });
-    let Some((begin, end, colour)) = found else {
-        return line.to_owned();
-    };
-    format!(
-        "{}{colour}{}\x1b[0m{}",
-        &line[..begin],
-        &line[begin..end],
-        &line[end..]
+    found.map_or_else(
+        || line.to_owned(),
+        |(begin, end, colour)| painted(line, begin, end, colour),
     )
 }
 
@@ -168,10 +172,24 @@ mod tests {
     }
 
     #[test]
-    fn no_line_ends_between_a_number_and_its_unit() {
-        let text = format!("{} 0.27 % and 12 V", "x".repeat(94));
-        let told = paragraph(&text);
-        assert_eq!(told.lines().nth(1), Some("0.27 % and 12 V"), "{told}");
+    fn the_word_of_a_verdict_alone_is_coloured() {
+        for (line, expected) in [
+            (
+                "hub: works: it holds its torque\nmotor",
+                "hub: \x1b[1;32mworks\x1b[0m: it holds its torque\nmotor",
+            ),
+            (
+                "hub: Works, but slowly.",
+                "hub: \x1b[1;33mWorks, but\x1b[0m slowly.",
+            ),
+            (
+                "hub: does not work: no",
+                "hub: \x1b[1;31mdoes not work\x1b[0m: no",
+            ),
+            ("hub.toml: nothing works", "hub.toml: nothing works"),
+        ] {
+            assert_eq!(verdict_coloured(line), expected);
+        }
     }
 
     #[test]

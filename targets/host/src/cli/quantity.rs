@@ -8,11 +8,13 @@ use hexagen_lab::engine::PerSensor;
 fn quantity(text: &str, dimension: Dimension) -> Result<f64, String> {
     match split(text.trim()) {
         Some((number, "")) if number != 0.0 => {
-            let units: Vec<String> = Unit::spellings(dimension)
+            let mut units: Vec<String> = Unit::spellings(dimension)
                 .iter()
                 .take(2)
-                .map(|unit| format!("`{number}{unit}`"))
+                // Without a space the shell takes it for one argument.
+                .map(|unit| format!("`{number}{}`", unit.replace(' ', "")))
                 .collect();
+            units.dedup();
             Err(format!(
                 "`{text}` has no unit; write it like {}",
                 units.join(" or ")
@@ -78,12 +80,7 @@ fn within(value: f64, least: f64, most: f64, unit: &str) -> Result<f64, String> 
 
 /// Newton metres.
 pub(super) fn torque(text: &str) -> Result<f64, String> {
-    within(
-        quantity_or_number(text, Dimension::Torque)?,
-        0.0,
-        1e5,
-        " Nm",
-    )
+    within(quantity(text, Dimension::Torque)?, 0.0, 1e5, " Nm")
 }
 
 /// Seconds.
@@ -133,12 +130,7 @@ pub(super) fn counts(text: &str) -> Result<f64, String> {
 
 /// kg m2.
 pub(super) fn inertia(text: &str) -> Result<f64, String> {
-    within(
-        quantity_or_number(text, Dimension::Inertia)?,
-        1e-9,
-        100.0,
-        " kg m2",
-    )
+    within(quantity(text, Dimension::Inertia)?, 1e-9, 100.0, " kg m2")
 }
 
 /// A true value over the stated one.
@@ -149,20 +141,25 @@ pub(super) fn factor(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Revolutions per minute; other units of speed are converted.
+/// Revolutions per minute, of an option that names them; other units of speed are converted.
 pub(super) fn rpm(text: &str) -> Result<f64, String> {
     match split(text.trim()) {
-        Some((number, "" | "rpm")) => Ok(number),
+        Some((number, "")) => Ok(number),
+        _ => speed(text),
+    }
+}
+
+/// Revolutions per minute of a speed with its unit.
+pub(super) fn speed(text: &str) -> Result<f64, String> {
+    match split(text.trim()) {
+        Some((number, "rpm")) => Ok(number),
         _ => quantity(text, Dimension::Speed).map(|omega| omega * 30.0 / std::f64::consts::PI),
     }
 }
 
-/// Radians; `deg` is converted.
+/// Radians of an angle with its unit.
 pub(super) fn radians(text: &str) -> Result<f64, String> {
-    match split(text.trim()) {
-        Some((number, "")) => Ok(number),
-        _ => quantity(text, Dimension::Angle).map(f64::to_radians),
-    }
+    quantity(text, Dimension::Angle).map(f64::to_radians)
 }
 
 /// A shape of the EMF: a word, and behind a colon its data.
@@ -238,6 +235,12 @@ mod tests {
         assert_eq!(current_text("40A"), Ok("40 A".to_owned()));
         assert_eq!(rpm("-1500"), Ok(-1500.0));
         assert_eq!(rpm("1500rpm"), Ok(1500.0));
+        assert_eq!(speed("-1500rpm"), Ok(-1500.0));
+        assert_eq!(inertia("1.2e-5 kg m2"), Ok(1.2e-5));
+        assert_eq!(
+            inertia("120 g cm2").map(|value| (value * 1e9).round()),
+            Ok(12_000.0)
+        );
         assert_eq!(radians("180deg"), Ok(std::f64::consts::PI));
         assert_eq!(hall_error("5deg"), Ok([5.0; 3]));
         assert_eq!(hall_error("5deg,-3deg,0"), Ok([5.0, -3.0, 0.0]));
@@ -291,11 +294,23 @@ mod tests {
             Err("1e300 is out of range: 0.01 to 100 times the stated value".to_owned())
         );
         assert_eq!(
-            torque("-1e300"),
+            torque("-1e300 Nm"),
             Err("-1e300 is out of range: at most 100000 Nm".to_owned())
         );
         assert!(hall_error("1deg,2deg").is_err() && adc_offset("1A,2A,3A,4A").is_err());
         assert!(adc_scale("1,200").is_err() && counts("1 A").is_err());
+        for (bare, remedy) in [
+            (torque("3.3"), "`3.3` has no unit; write it like `3.3Nm`"),
+            (
+                inertia("0.001"),
+                "`0.001` has no unit; write it like `0.001kgm2`",
+            ),
+            (radians("90"), "`90` has no unit; write it like `90deg`"),
+            (speed("1500"), "`1500` has no unit; write it like `1500rpm`"),
+        ] {
+            let told = bare.expect_err("is bare");
+            assert!(told.starts_with(remedy), "{told}");
+        }
         assert!(torque("inf").is_err() && torque("nan").is_err() && torque("").is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! `hexagen advise`: tries the controllers on a motor and its board, and recommends one.
 
-use crate::cli::{Bar, Failure, print_json, print_table, print_text};
+use crate::cli::{Bar, Failure, paragraph, print_json, print_table, print_text};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::advise::{Advice, DEVIATING_AT, OWN, Point, SPEEDS, Tried, Worst, advise};
@@ -35,17 +35,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     print_table(&table(&advice))?;
     let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
-    print_text(&format!(
-        "Torque: of the rated {} (the percentages of `check` and `report` are of what `max_current` allows), at {speeds} % of rated speed, the worst of\n\
-         them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3, k_b x 1.1 and the bus 15 % low, each alone. Copper loss and\n\
-         switching at rated speed. Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core\n\
+    print_text(&paragraph(&format!(
+        "Torque: of the rated {} (the percentages of `check` and `report` are of what `max_current` allows), at {speeds} % of rated speed, the worst of \
+         them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3, k_b x 1.1 and the bus 15 % low, each alone. Copper loss and \
+         switching at rated speed. Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core \
          that is named or assumed.",
         engineering(advice.rated_torque_nm, "Nm"),
-    ))?;
+    )))?;
     for line in refusals(&advice) {
-        print_text(&line)?;
+        print_text(&paragraph(&line))?;
     }
-    print_text(&verdict(&advice))
+    print_text(&paragraph(&verdict(&advice)))
 }
 
 /// The reasons of refused variants, each once.

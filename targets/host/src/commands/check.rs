@@ -1,11 +1,14 @@
-//! `hexagen check`: whether and how well a drive will work, in ten lines and within a second.
+//! `hexagen check`: whether and how well a drive will work, in ten lines (eleven with limits of the bus current)
+//! and within a second.
 //!
 //! The drive is designed and verified as for generation, and judged on the simulated motor
 //! (`hexagen_lab::judgement`); `report` compares, measures and plots.
 
 mod text;
 
-use crate::cli::{DriveArguments, Failure, note, print_json, print_text, tell_warnings};
+use crate::cli::{
+    DriveArguments, Failure, note, print_json, print_verdict, tell_warnings, verdict_lines,
+};
 use clap::Args;
 use hexagen_lab::judgement::Judgement;
 
@@ -18,6 +21,9 @@ pub struct Options {
     /// Say why each option was chosen that the file leaves out
     #[arg(long)]
     pub reasons: bool,
+    /// Print every clause of every line, also where they are more than ten lines
+    #[arg(long)]
+    pub all: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -48,12 +54,27 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         if !assumed.is_empty() {
             note(&format!("assumed, so measure: {}", assumed.join(", ")));
         }
-        let lines = text::lines(&judgement, &drive, options.reasons, &next(asked));
-        print_text(&lines.join("\n"))?;
+        let rows = text::rows(&judgement, &drive, options.reasons, &next(asked));
+        let head = format!("{}: {}", judgement.motor, judgement.verdict);
+        print_verdict(&verdict_lines(
+            &head,
+            &rows,
+            most(options, &judgement),
+            "with --all",
+        ))?;
     }
     judgement
         .failure()
         .map_or(Ok(()), |error| Err(Failure::Check(error)))
+}
+
+/// Most lines.
+fn most(options: &Options, judgement: &Judgement) -> usize {
+    if options.all || options.reasons {
+        usize::MAX
+    } else {
+        10 + usize::from(judgement.bus_limits().is_some())
+    }
 }
 
 /// The command that says more of the same drive.

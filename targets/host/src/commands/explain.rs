@@ -1,6 +1,6 @@
 //! `hexagen explain`: cause, example and remedy of a diagnostic.
 
-use crate::cli::{Failure, print_json, print_text, wrapped_row};
+use crate::cli::{Failure, paragraph, print_json, print_text, wrapped_row};
 use clap::Args;
 use hexagen_codegen::diagnostics::Code;
 use serde::Serialize;
@@ -51,10 +51,10 @@ impl Told {
         print_text(&format!(
             "{} ({severity})\n{}\n\nWrong:\n{}\n\nRight:\n{}\n\n{}",
             self.code,
-            self.cause,
+            paragraph(self.cause),
             lines(self.wrong),
             lines(self.right),
-            self.remedy
+            paragraph(self.remedy)
         ))
     }
 }

@@ -2,7 +2,9 @@
 
 use super::cut::cut_by;
 use super::ran::Ran;
-use crate::cli::{Failure, RunArguments, print_json, print_text, spinner, tell_warnings};
+use crate::cli::{
+    Failure, RunArguments, paragraph, print_json, print_text, spinner, tell_warnings,
+};
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_lab::closed_loop::{
@@ -151,11 +153,11 @@ fn print_found(outcome: &Outcome, (own, free): (String, Option<String>)) -> Resu
             "\nThe torque is beyond the drive at every speed.".to_owned()
         }
     });
-    print_text(&format!(
+    print_text(&paragraph(&format!(
         "{}: {} Nm {own}{free}{bounds}",
         outcome.ran.name(),
         significant(outcome.torque_nm, 4),
-    ))
+    )))
 }
 
 /// A limit in words, on a bus of `v_bus` volt.

@@ -6,7 +6,7 @@ use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::motors::{
     COARSE, LibraryMotor, Limit, RIPPLE, RatedPoint, SPEEDS, TORQUE, library_at_rating,
 };
-use hexagen_lab::report::Table;
+use hexagen_lab::report::{Cell, Table, Tone};
 use hexagen_lab::text::significant;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -102,7 +102,7 @@ fn table(motors: &[LibraryMotor]) -> Table {
                 .reduce(which)
                 .map_or("-".to_owned(), |value| format!("{value:.1}"))
         };
-        table.row([
+        let cells = [
             motor.name.clone(),
             cell(motor.v_bus_v, 1.0),
             cell(motor.rated_current_a, 1.0),
@@ -111,8 +111,8 @@ fn table(motors: &[LibraryMotor]) -> Table {
             cell(power, 1.0),
             extreme(|point| point.torque_pct, f64::min),
             extreme(|point| point.ripple_pct, f64::max),
-            limit(motor).to_owned(),
-        ]);
+        ];
+        table.row(cells.map(Cell::from).into_iter().chain([limit(motor)]));
     }
     table
 }
@@ -152,7 +152,7 @@ fn all_columns(motors: &[LibraryMotor]) -> Table {
             });
             points.collect::<Vec<_>>().join(", ")
         };
-        table.row([
+        let cells = [
             motor.name.clone(),
             motor
                 .pole_pairs
@@ -166,19 +166,20 @@ fn all_columns(motors: &[LibraryMotor]) -> Table {
             cell(motor.envelope_pct, 1.0),
             points(|point| point.torque_pct),
             points(|point| point.ripple_pct),
-            limit(motor).to_owned(),
-        ]);
+        ];
+        table.row(cells.map(Cell::from).into_iter().chain([limit(motor)]));
     }
     table
 }
 
 /// What limits a motor's drive, where it is not right.
-fn limit(motor: &LibraryMotor) -> &'static str {
-    match motor.limit {
-        _ if motor.is_right => "-",
-        Some(Limit::BusVoltage) => "bus voltage",
-        Some(Limit::Trip) => "trips",
-        Some(Limit::ControlPeriod) => "control period",
-        None => "not generated",
-    }
+fn limit(motor: &LibraryMotor) -> Cell {
+    let (text, tone) = match motor.limit {
+        _ if motor.is_right => ("-", Tone::None),
+        Some(Limit::BusVoltage) => ("bus voltage", Tone::Slight),
+        Some(Limit::ControlPeriod) => ("control period", Tone::Slight),
+        Some(Limit::Trip) => ("trips", Tone::Broken),
+        None => ("not generated", Tone::Broken),
+    };
+    Cell::from(text).toned(tone)
 }

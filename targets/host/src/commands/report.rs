@@ -1,6 +1,9 @@
 //! `hexagen report`: the result table and the page of one motor.
 
-use crate::cli::{Bar, Failure, note, print_json, print_table, print_text, wrapped_row};
+use crate::cli::{
+    Bar, Failure, note, paragraph, print_json, print_table, print_text, print_verdict,
+    verdict_lines,
+};
 use crate::render;
 use clap::Args;
 use hexagen_lab::judgement::Judgement;
@@ -60,11 +63,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         for warning in data.own.iter().flat_map(|own| &own.judgement.warnings) {
             note(warning);
         }
-        print_text(&lines(&data, &path).join("\n"))?;
+        print_verdict(&lines(&data, &path))?;
         if *all {
             print_table(&variants_table(&data))?;
             for text in &data.notes {
-                print_text(text)?;
+                print_text(&paragraph(text))?;
             }
         }
     }
@@ -82,20 +85,20 @@ fn outcome(judgement: Option<&Judgement>, checked: &[Checked]) -> Result<(), Fai
     }
 }
 
-/// The verdict in at most 12 lines of at most 100 columns.
+/// Most lines of the verdict.
+const MOST: usize = 12;
+
+/// The verdict in lines of at most 100 columns.
 fn lines(data: &Results, page: &Path) -> Vec<String> {
     let page = ("page", page.display().to_string());
     let (verdict, rows) = verdict(data).unwrap_or_default();
-    let head = format!("{}: {verdict}", data.file);
+    // Texts of pages keep numbers and units together.
+    let plain = |text: &str| text.replace('\u{a0}', " ");
+    let head = format!("{}: {}", data.file, plain(&verdict));
     let rows = rows.into_iter().chain([page]);
     let rows = rows.map(|(name, text)| match name {
-        "furthest" => format!("{name:<11} {text} (--all lists them)"),
-        _ => format!("{name:<11} {text}"),
+        "furthest" => (name, format!("{} (--all lists them)", plain(&text))),
+        _ => (name, plain(&text)),
     });
-    [head]
-        .into_iter()
-        .chain(rows)
-        // Texts of pages keep numbers and units together.
-        .map(|line| wrapped_row(&line.replace('\u{a0}', " ")))
-        .collect()
+    verdict_lines(&head, &rows.collect::<Vec<_>>(), MOST, "on the page")
 }

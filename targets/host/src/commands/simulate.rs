@@ -3,8 +3,8 @@
 use super::cut::cut_by;
 use super::ran::Ran;
 use crate::cli::{
-    self, Failure, PlantArguments, RunArguments, parse_rpm, parse_torque, print_json, print_text,
-    spinner, warn, write_file,
+    self, Failure, PlantArguments, RunArguments, paragraph, parse_rpm, parse_speed, parse_torque,
+    print_json, print_text, spinner, warn, write_file,
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
@@ -31,15 +31,15 @@ pub struct Options {
     /// Mechanical speed in rpm; negative is backward
     #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true, required_unless_present = "speed_set")]
     pub rpm: Option<f64>,
-    /// Speed set-point in rpm, with `speed_loop=on`: the run starts at --rpm or from rest, --torque is
+    /// Speed set-point as `1500rpm`, with `speed_loop=on`: the run starts at --rpm or from rest, --torque is
     /// the limit of the speed loop, which is made for the motor file's `inertia`; the shaft has that or
     /// --inertia, and the measurement begins after the run-up; warns if the speed has not settled within 2 % of set-point
     /// or start, whichever is faster. Without it a speed loop is left out
-    #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SPEED", value_parser = parse_speed, allow_hyphen_values = true)]
     pub speed_set: Option<f64>,
     /// Step of the load torque in the middle of the measurement, on top of --load: prints the dip of the speed, its
     /// overshoot and the time until it is back within 2 %. A torque that changes has no figures of merit
-    #[arg(long, value_name = "NM", value_parser = parse_torque, allow_hyphen_values = true, requires = "speed_set")]
+    #[arg(long, value_name = "TORQUE", value_parser = parse_torque, allow_hyphen_values = true, requires = "speed_set")]
     pub load_step: Option<f64>,
     /// Write the measurement of the first run, one row per period
     #[arg(long, value_name = "FILE")]
@@ -389,12 +389,12 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
         Some(_) => format!("from {} rpm with at most {torque} Nm", outcome.rpm),
         None => format!("{torque} Nm at {} rpm", outcome.rpm),
     };
-    print_text(&format!(
+    print_text(&paragraph(&format!(
         "{}, {} ({}{engine}): {asked}",
         outcome.ran.motor,
         outcome.ran.controller,
         outcome.ran.model.text(),
-    ))?;
+    )))?;
     if outcome.tripped.is_some() {
         return print_text("It tripped, so that it has no figures of merit.");
     }
@@ -413,10 +413,10 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
         } else {
             format!("{mean} rpm on average, {last} rpm at the end{settled}")
         };
-        print_text(&format!("{of}: {speeds}"))?;
+        print_text(&paragraph(&format!("{of}: {speeds}")))?;
     }
     if let Some(response) = outcome.response {
-        return print_text(&of_load_step(&response));
+        return print_text(&paragraph(&of_load_step(&response)));
     }
     let mut table = Table::listed(["figure of merit"], ["value", "unit"]);
     let figures = &outcome.figures;

@@ -1,6 +1,7 @@
 //! Pages, parts of them and tables as plain text; tables in Markdown, coloured where a terminal
 //! shows it.
 
+use super::lines::paragraph;
 use anstream::{AutoStream, ColorChoice};
 use comfy_table::presets::ASCII_MARKDOWN;
 use comfy_table::{CellAlignment, Color, ColumnConstraint, ContentArrangement, Row, Width};
@@ -21,7 +22,7 @@ pub fn text(blocks: &[Block]) -> String {
 fn block(block: &Block) -> String {
     match block {
         Block::Heading(text) => format!("\n{}:", typed(text)),
-        Block::Lead(text) | Block::Prose(text) | Block::Note(text) => typed(text),
+        Block::Lead(text) | Block::Prose(text) | Block::Note(text) => paragraph(&typed(text)),
         Block::Table(of) => table(of),
         Block::Tables(tables) => {
             let titled = tables
@@ -75,17 +76,22 @@ fn typed(text: &str) -> String {
     text.replace(['\u{a0}', '\u{202f}'], " ")
 }
 
+/// Whether what stdout shows has colours, by NO_COLOR, CLICOLOR, CLICOLOR_FORCE and what it is.
+pub fn is_coloured() -> bool {
+    AutoStream::choice(&std::io::stdout()) != ColorChoice::Never
+}
+
 /// A table in Markdown, with the first line of each cell only.
 pub fn table(table: &Table) -> String {
     let mut drawn = comfy_table::Table::new();
     drawn.load_style(ASCII_MARKDOWN);
     drawn.set_content_arrangement(ContentArrangement::Dynamic);
     drawn.set_width(COLUMNS);
-    // Depends on NO_COLOR, CLICOLOR and stdout.
-    match AutoStream::choice(&std::io::stdout()) {
-        ColorChoice::Never => drawn.force_no_tty(),
-        _ => drawn.enforce_styling(),
-    };
+    if is_coloured() {
+        drawn.enforce_styling();
+    } else {
+        drawn.force_no_tty();
+    }
     drawn.set_header(table.columns.iter().map(heading).collect::<Vec<_>>());
     for row in table.groups.iter().flat_map(rows) {
         drawn.add_row(row.iter().map(painted));

@@ -119,7 +119,7 @@ fn wrong_input_is_told() {
             &["--torque 0", "not 0"],
         ),
         (
-            &["faults", PAPER, "--inertia", "1"],
+            &["faults", PAPER, "--inertia", "1kgm2"],
             &["--inertia", "remove it"],
         ),
         (

@@ -105,7 +105,10 @@ fn the_library_is_listed() {
     assert_eq!(paper["generates"], true);
     assert_eq!(paper["is_right"], true);
     let simulated = ["simulate", PAPER, "--controller", "pdcc", "--rpm", "2000"];
-    let alone = run(simulated.iter().chain(&["--start-angle", "0.1", "--json"])).json();
+    let alone = run(simulated
+        .iter()
+        .chain(&["--start-angle", "0.1rad", "--json"]))
+    .json();
     let points = |motor: &Value| motor["points"].as_array().expect("a list").clone();
     let rated = points(paper).pop().expect("points");
     assert_eq!(number(&rated, "speed_pct"), 100.0);
@@ -144,7 +147,24 @@ fn the_library_is_listed() {
             "{motor}"
         );
         let name = motor["name"].as_str().expect("a name");
-        assert!(table.contains(&format!("| {name} ")), "{name}");
+        let row = table
+            .lines()
+            .find(|row| row.starts_with(&format!("| {name} ")));
+        let row = row.unwrap_or_else(|| panic!("no {name} in\n{table}"));
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let torques = all.iter().filter_map(|point| point["torque_pct"].as_f64());
+        let least = torques.fold(f64::INFINITY, f64::min);
+        let limit = match motor["limit"].as_str() {
+            None => "-",
+            Some("bus_voltage") => "bus voltage",
+            Some("control_period") => "control period",
+            Some(other) => other,
+        };
+        assert_eq!(
+            [cells[6], cells[8]],
+            [&format!("{least:.1}"), limit],
+            "{row}"
+        );
         assert_eq!(
             run(["generate", name]).code == 0,
             motor["generates"] == true,

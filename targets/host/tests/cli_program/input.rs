@@ -154,11 +154,11 @@ fn options_out_of_range_or_at_odds_are_told() {
             "inductance",
         ),
         (
-            &["simulate", PAPER, "--rpm", "1", "--load", "1"],
+            &["simulate", PAPER, "--rpm", "1", "--load", "1Nm"],
             "--inertia",
         ),
         (
-            &["simulate", PAPER, "--rpm", "1", "--load=-1"],
+            &["simulate", PAPER, "--rpm", "1", "--load=-1Nm"],
             "give it without a sign",
         ),
         (
@@ -188,7 +188,7 @@ fn options_out_of_range_or_at_odds_are_told() {
         (&["simulate", PAPER, "--rpm", "1e9"], "at most 50000 rpm"),
         (&["simulate", PAPER, "--rpm", "nan"], "not a number"),
         (
-            &["simulate", PAPER, "--rpm", "1", "--torque", "1e300"],
+            &["simulate", PAPER, "--rpm", "1", "--torque", "1e300Nm"],
             "out of range",
         ),
         (
@@ -196,7 +196,7 @@ fn options_out_of_range_or_at_odds_are_told() {
             "out of range",
         ),
         (
-            &["simulate", PAPER, "--rpm", "1", "--inertia", "1e-300"],
+            &["simulate", PAPER, "--rpm", "1", "--inertia", "1e-300kgm2"],
             "out of range",
         ),
         (
@@ -247,7 +247,7 @@ fn options_out_of_range_or_at_odds_are_told() {
             "--adc-offset: plant: adc offset",
         ),
         (
-            &["compare", PAPER, "--robustness", "--inertia", "1"],
+            &["compare", PAPER, "--robustness", "--inertia", "1kgm2"],
             "--inertia",
         ),
         (&["compare", PAPER, "--csv", "sheet.csv"], "--robustness"),
@@ -263,7 +263,7 @@ fn options_out_of_range_or_at_odds_are_told() {
             "cannot write",
         ),
         (
-            &["simulate", PAPER, "--rpm", "0", "--speed-set", "900"],
+            &["simulate", PAPER, "--rpm", "0", "--speed-set", "900rpm"],
             "`speed_loop=on`",
         ),
         (
@@ -275,14 +275,14 @@ fn options_out_of_range_or_at_odds_are_told() {
                 "--rpm",
                 "0",
                 "--speed-set",
-                "900",
+                "900rpm",
                 "--inertia",
-                "50",
+                "50kgm2",
             ],
             "the run-up takes",
         ),
         (&["limit", PAPER, "--torque", "0"], "--torque 0"),
-        (&["limit", PAPER, "--inertia", "1"], "--inertia"),
+        (&["limit", PAPER, "--inertia", "1kgm2"], "--inertia"),
         (&["verify", PAPER, "--steps", "0"], "--steps"),
         (
             &["verify", PAPER, "--steps", "18446744073709551615"],

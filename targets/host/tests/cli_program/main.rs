@@ -3,6 +3,7 @@
 mod faults;
 mod generate;
 mod input;
+mod lines;
 mod newcomer;
 mod output;
 mod reproduce;

@@ -12,7 +12,7 @@ fn a_result_that_cannot_be_written_is_an_error() {
         &["generate", PAPER][..],
         &["simulate", PAPER, "--rpm", "1500", "--json"],
         &["simulate", PAPER, "--rpm", "1500"],
-        &["limit", PAPER, "--start-angle", "0.1"],
+        &["limit", PAPER, "--start-angle", "0.1rad"],
         &["motors"],
         &["--help"],
     ] {

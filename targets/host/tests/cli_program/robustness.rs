@@ -16,7 +16,7 @@ const SHEET: [&str; 7] = [
     "--controller",
     HASTY,
     "--start-angle",
-    "0.1",
+    "0.1rad",
 ];
 
 fn cells(sheet: &Value) -> &Vec<Value> {
@@ -123,7 +123,7 @@ fn no_default_controller_that_modulates_oscillates_under_any_disturbance() {
             "--controller",
             controller,
             "--start-angle",
-            "0.1",
+            "0.1rad",
         ];
         let sheet = run(["compare", PAPER, "--json"].iter().chain(&options)).json();
         for cell in cells(&sheet) {
@@ -164,7 +164,7 @@ fn a_disturbed_plant_is_the_one_that_simulate_has() {
         ),
     ] {
         let simulated = ["simulate", PAPER, "--rpm", "1500", "--controller", HASTY];
-        let rest = ["--start-angle", "0.1", "--json"];
+        let rest = ["--start-angle", "0.1rad", "--json"];
         let simulated = run(simulated.iter().chain(&rest).chain(options)).json();
         let cell = cell(&sheet, name, 1500.0);
         // The speeds differ in their last bits, and with them the rounding of single samples.
@@ -191,7 +191,7 @@ fn conversions_one_after_the_other_are_compared_with_both_at_once() {
         .replacen("current_sensing = \"in_phase\"\n", sensing, 1);
     std::fs::write(&path, text).expect("can be written");
     let path = path.to_str().expect("a plain path");
-    let options = ["--controller", "pdcc", "--start-angle", "0.1", "--json"];
+    let options = ["--controller", "pdcc", "--start-angle", "0.1rad", "--json"];
     let sheet = run(["compare", path, "--robustness"].iter().chain(&options)).json();
     for rpm in [400.0, 1500.0] {
         let one_by_one = cell(&sheet, "none", rpm);
@@ -281,7 +281,7 @@ fn a_controller_that_does_not_generate_is_told_beside_the_others() {
         "odrive-d6374-150kv",
         "--robustness",
         "--start-angle",
-        "0.1",
+        "0.1rad",
         "--json",
     ]);
     let sheet = said.json();

@@ -95,7 +95,7 @@ fn bit_true_gives_the_very_same_merits_and_ideal_nearly() {
 
 #[test]
 fn both_directions_and_both_torques_work() {
-    for (rpm, torque) in [("-1200", "2"), ("1200", "-2"), ("-1200", "-2")] {
+    for (rpm, torque) in [("-1200", "2Nm"), ("1200", "-2Nm"), ("-1200", "-2Nm")] {
         let result = simulate(&["--rpm", rpm, "--torque", torque, "--controller", BEST]);
         let (mean, demand) = (
             number(&result, "mean_torque_nm"),
@@ -103,7 +103,7 @@ fn both_directions_and_both_torques_work() {
         );
         assert!(
             (mean / demand - 1.0).abs() < 0.02,
-            "{rpm} rpm {torque} Nm: {mean}"
+            "{rpm} rpm {torque}: {mean}"
         );
         assert_eq!(number(&result, "rpm").to_string(), rpm);
     }
@@ -145,7 +145,7 @@ fn without_json_there_is_a_table() {
 
 #[test]
 fn plant_options_reach_the_plant() {
-    let nominal = simulate(&["--rpm", "1500", "--start-angle", "0.1"]);
+    let nominal = simulate(&["--rpm", "1500", "--start-angle", "0.1rad"]);
     for option in [
         ["--dead-time", "1us"],
         ["--adc-bits", "8"],
@@ -162,12 +162,12 @@ fn plant_options_reach_the_plant() {
         ["--scale-kb", "0.9"],
         ["--hall-error", "5deg"],
         ["--hall-error", "5deg,-5deg,0"],
-        ["--inertia", "1e-3"],
+        ["--inertia", "1e-3kgm2"],
         ["--start-angle", "10deg"],
     ] {
         let mut arguments = vec!["--rpm", "1500"];
         if option[0] != "--start-angle" {
-            arguments.extend(["--start-angle", "0.1"]);
+            arguments.extend(["--start-angle", "0.1rad"]);
         }
         arguments.extend(option);
         let changed = simulate(&arguments);
@@ -182,7 +182,14 @@ fn plant_options_reach_the_plant() {
 fn adc_options_change_plant_and_controller_together() {
     // A range of its own would scale the torque; the same for both leaves it.
     let mean = |range: &str| {
-        let result = simulate(&["--rpm", "800", "--adc-range", range, "--start-angle", "0.1"]);
+        let result = simulate(&[
+            "--rpm",
+            "800",
+            "--adc-range",
+            range,
+            "--start-angle",
+            "0.1rad",
+        ]);
         number(&result, "mean_torque_nm")
     };
     let (narrow, wide) = (mean("30A"), mean("60A"));
@@ -197,13 +204,13 @@ fn a_free_shaft_settles_where_load_and_torque_balance() {
         "--rpm",
         "600",
         "--torque",
-        "1",
+        "1Nm",
         "--inertia",
-        "5e-3",
+        "5e-3kgm2",
         "--load",
-        "1",
+        "1Nm",
         "--start-angle",
-        "0.1",
+        "0.1rad",
     ]);
     assert!(
         (number(&result, "mean_torque_nm") - 1.0).abs() < 0.01,
@@ -213,7 +220,7 @@ fn a_free_shaft_settles_where_load_and_torque_balance() {
 
 #[test]
 fn a_speed_loop_reaches_the_speed_that_is_set() {
-    for (set, load) in [("1500", "0.1"), ("-900", "0.2")] {
+    for (set, load) in [("1500rpm", "0.1Nm"), ("-900rpm", "0.2Nm")] {
         let result = run([
             "simulate",
             "hurst-long",
@@ -224,17 +231,18 @@ fn a_speed_loop_reaches_the_speed_that_is_set() {
             "--speed-set",
             set,
             "--inertia",
-            "7.06e-6",
+            "7.06e-6kgm2",
             "--load",
             load,
             "--start-angle",
-            "0.1",
+            "0.1rad",
             "--json",
         ])
         .json();
         let share = number(&result, "mean_rpm") / number(&result, "set_rpm");
         assert!((share - 1.0).abs() < 0.02, "{result}");
-        let opposing = load.parse::<f64>().expect("a number") * share.signum();
+        let opposing = load.trim_end_matches("Nm").parse::<f64>();
+        let opposing = opposing.expect("a number") * share.signum();
         let torque = number(&result, "mean_torque_nm") * number(&result, "set_rpm").signum();
         assert!((torque / opposing - 1.0).abs() < 0.05, "{result}");
     }
@@ -248,7 +256,7 @@ fn a_speed_is_set_from_rest_with_the_inertia_of_the_file_and_else_a_torque() {
         "--controller",
         "pdcc:speed_loop=on",
     ];
-    let set = ["--speed-set", "1500", "--start-angle", "0.1"];
+    let set = ["--speed-set", "1500rpm", "--start-angle", "0.1rad"];
     let said = run(drive.iter().chain(&set));
     assert_eq!(said.code, 0, "{said:?}");
     assert!(
@@ -256,7 +264,7 @@ fn a_speed_is_set_from_rest_with_the_inertia_of_the_file_and_else_a_torque() {
         "{said:?}"
     );
     assert!(said.stdout.contains(", settled"), "{said:?}");
-    let said = run(drive.iter().chain(&["--rpm", "400", "--torque", "-0.1"]));
+    let said = run(drive.iter().chain(&["--rpm", "400", "--torque", "-0.1Nm"]));
     assert_eq!(said.code, 0, "{said:?}");
     assert!(
         said.stderr.contains("the speed loop is left out"),
@@ -275,7 +283,7 @@ fn a_speed_is_set_from_rest_with_the_inertia_of_the_file_and_else_a_torque() {
         "--speed-set",
         "0",
         "--start-angle",
-        "0.1",
+        "0.1rad",
         "--json",
     ];
     let drive = ["simulate", file, "--controller", "pdcc:speed_loop=on"];
@@ -292,11 +300,11 @@ fn a_limit_of_the_bus_current_is_named_where_it_cuts_the_torque() {
     std::fs::write(&file, motor.text.replace("[inverter]\n", limits)).expect("is written");
     let file = file.to_str().expect("a path");
     let cut = ", with `return_current_limit` of 1 A";
-    let said = run(["simulate", file, "--rpm", "400", "--torque", "-5.9"]);
+    let said = run(["simulate", file, "--rpm", "400", "--torque", "-5.9Nm"]);
     assert!(said.stderr.contains(cut), "{said:?}");
-    let said = run(["limit", file, "--torque", "-5"]);
+    let said = run(["limit", file, "--torque", "-5Nm"]);
     assert!(said.stdout.contains(cut), "{said:?}");
-    let said = run(["limit", file, "--torque", "5.9"]);
+    let said = run(["limit", file, "--torque", "5.9Nm"]);
     assert!(!said.stdout.contains(cut), "{said:?}");
     // The bus ends the torque long before so much is drawn.
     let wide = "[inverter]\nbus_current_limit = \"200 A\"\n";
@@ -312,13 +320,13 @@ fn a_set_point_beyond_the_limit_is_told() {
             "simulate", PAPER, "--rpm", "300", "--torque", torque, "--json",
         ])
     };
-    let said = at("5");
+    let said = at("5Nm");
     let result = said.json();
     assert!(said.stderr.contains("max_current"), "{}", said.stderr);
     let reached = number(&result, "mean_torque_nm");
     assert!(reached < 4.0, "{result}");
     // Tracking is judged by the current that the drive may ask for, not by the one that it may not.
-    let asked = at(&reached.to_string()).json();
+    let asked = at(&format!("{reached}Nm")).json();
     let [beyond, within] = [&result, &asked].map(|run| number(run, "tracking_rms_a"));
     assert!(
         (beyond / within - 1.0).abs() < 0.05,
@@ -335,10 +343,10 @@ fn a_percentage_of_nothing_is_absent() {
         for (rpm, torque, absent) in [
             ("1500", "0", &both),
             ("0", "0", &both),
-            ("0", "3", &harmonics),
+            ("0", "3Nm", &harmonics),
         ] {
             let arguments = ["--rpm", rpm, "--torque", torque, "--controller", controller];
-            let result = simulate(&[&arguments[..], &["--start-angle", "0.1"]].concat());
+            let result = simulate(&[&arguments[..], &["--start-angle", "0.1rad"]].concat());
             for key in MERITS {
                 let is_absent = absent.contains(&key) || (rpm, key) == ("0", "commutation_us");
                 let place = format!("{controller}, {rpm} rpm, {torque} Nm, {key}: {result}");
@@ -347,7 +355,7 @@ fn a_percentage_of_nothing_is_absent() {
             }
         }
     }
-    let said = run(["simulate", PAPER, "--rpm", "0", "--start-angle", "0.1"]);
+    let said = run(["simulate", PAPER, "--rpm", "0", "--start-angle", "0.1rad"]);
     assert!(
         said.stdout
             .contains("| current distortion          |       - |"),
@@ -366,13 +374,13 @@ fn a_free_shaft_tells_the_speed_that_it_reached() {
         "--rpm",
         "600",
         "--torque",
-        "1",
+        "1Nm",
         "--inertia",
-        "5e-3",
+        "5e-3kgm2",
         "--load",
-        "0.5",
+        "0.5Nm",
         "--start-angle",
-        "0.1",
+        "0.1rad",
     ];
     let result = simulate(&free);
     let gained = |seconds: f64| 600.0 + 100.0 * seconds * 60.0 / std::f64::consts::TAU;
@@ -396,8 +404,8 @@ fn a_free_shaft_tells_the_speed_that_it_reached() {
 fn a_load_step_has_its_dip_overshoot_and_recovery() {
     let asked = |load: &str| {
         let drive = ["hurst-long", "--controller", "pdcc:speed_loop=on"];
-        let speed = ["--speed-set", "1500", "--start-angle", "0.1"];
-        let step = ["--inertia", "7.06e-6", "--load-step", load];
+        let speed = ["--speed-set", "1500rpm", "--start-angle", "0.1rad"];
+        let step = ["--inertia", "7.06e-6kgm2", "--load-step", load];
         let all = drive.into_iter().chain(speed).chain(step);
         all.map(str::to_owned).collect::<Vec<_>>()
     };
@@ -408,7 +416,7 @@ fn a_load_step_has_its_dip_overshoot_and_recovery() {
             .chain(asked.iter().map(String::as_str));
         run(fixed.chain(more.iter().copied()))
     };
-    let [small, large] = ["0.005", "0.01"].map(|load| simulated(load, &["--json"]).json());
+    let [small, large] = ["0.005Nm", "0.01Nm"].map(|load| simulated(load, &["--json"]).json());
     for result in [&small, &large] {
         assert_eq!(result["settled"], true, "{result}");
         assert!(number(result, "recovery_ms") > 0.0, "{result}");
@@ -416,19 +424,21 @@ fn a_load_step_has_its_dip_overshoot_and_recovery() {
     }
     let ratio = number(&large, "dip_rpm") / number(&small, "dip_rpm");
     assert!((1.5..2.5).contains(&ratio), "{small} {large}");
-    let said = simulated("0.01", &[]);
+    let said = simulated("0.01Nm", &[]);
     assert!(
         said.stdout.contains(", settled before the load step, "),
         "{said:?}"
     );
-    assert!(said.stdout.contains("; back within 2 % after "), "{said:?}");
+    let words: Vec<&str> = said.stdout.split_whitespace().collect();
+    let words = words.join(" ");
+    assert!(words.contains("; back within 2 % after "), "{said:?}");
     assert_eq!(said.stderr, "", "{said:?}");
     // More than the motor makes.
-    let said = simulated("0.4", &[]);
+    let said = simulated("0.4Nm", &[]);
     assert!(said.stdout.contains("; NOT back within 2 %"), "{said:?}");
     let warning = "--load-step: the speed has not come back to 1500 rpm; it is 0 rpm at the end";
     assert!(said.stderr.contains(warning), "{said:?}");
-    for load in ["-0.1", "0"] {
+    for load in ["-0.1Nm", "0"] {
         simulated(load, &[]).assert_bad_input(&["--load-step", "give it above 0"]);
     }
 }
@@ -443,12 +453,12 @@ fn a_speed_loop_that_does_not_settle_says_so() {
         "--rpm",
         "0",
         "--inertia",
-        "7.06e-6",
+        "7.06e-6kgm2",
         "--start-angle",
-        "0.1",
+        "0.1rad",
     ];
-    for (speed, settled) in [("1500", true), ("5400", false)] {
-        let asked = ["--load", "0.1", "--speed-set", speed];
+    for (speed, settled) in [("1500rpm", true), ("5400rpm", false)] {
+        let asked = ["--load", "0.1Nm", "--speed-set", speed];
         let said = run(common.iter().chain(&asked).chain(&["--json"]));
         let result = said.json();
         assert_eq!(result["settled"], settled, "{result}");
@@ -476,7 +486,7 @@ fn a_speed_loop_that_does_not_settle_says_so() {
     // A load that the motor cannot move.
     let stalled = run(common
         .iter()
-        .chain(&["--load", "0.4", "--speed-set", "1500"]));
+        .chain(&["--load", "0.4Nm", "--speed-set", "1500rpm"]));
     assert_eq!(stalled.code, 1, "{stalled:?}");
     assert!(
         stalled
@@ -491,7 +501,7 @@ fn a_speed_loop_that_does_not_settle_says_so() {
 #[test]
 fn limit_ends_where_the_torque_rises_above_the_demand() {
     let drive = "pi-pwm:six_step=on,bandwidth=600Hz";
-    let options = ["--controller", drive, "--start-angle", "0.1"];
+    let options = ["--controller", drive, "--start-angle", "0.1rad"];
     let common = ["limit", "trivedi-keshri-660w"];
     let result = run(common.iter().chain(&options).chain(&["--json"])).json();
     let demand = number(&result, "torque_nm");
@@ -525,7 +535,7 @@ fn limit_ends_where_the_torque_rises_above_the_demand() {
         "--controller",
         "phcc",
         "--start-angle",
-        "0.1",
+        "0.1rad",
         "--json",
     ]);
     let result = said.json();
@@ -549,7 +559,7 @@ fn limit_has_its_keys_and_agrees_with_simulate() {
         controller,
         "--json",
         "--start-angle",
-        "0.1",
+        "0.1rad",
     ]);
     let result = said.json();
     let (rpm, percent) = (number(&result, "limit_rpm"), number(&result, "limit_pct"));
@@ -566,7 +576,7 @@ fn limit_has_its_keys_and_agrees_with_simulate() {
             "--controller",
             controller,
             "--start-angle",
-            "0.1",
+            "0.1rad",
         ];
         number(&simulate(&arguments), "mean_torque_nm") >= 0.97 * 3.3
     };
@@ -582,7 +592,7 @@ fn a_drive_that_trips_is_told_with_fault_and_time() {
         ("bit-true", "pdcc"),
         ("ideal", "pdcc"),
     ] {
-        let plant = ["--scale-l", "0.1", "--start-angle", "0.1"];
+        let plant = ["--scale-l", "0.1", "--start-angle", "0.1rad"];
         let common = ["--controller", controller, "--model", model, "--json"];
         let said = run(["simulate", PAPER, "--rpm", "1500"]
             .iter()
@@ -645,7 +655,7 @@ fn the_controller_of_a_motor_file_is_named_by_what_it_is() {
             "--rpm",
             "1500",
             "--start-angle",
-            "0.1",
+            "0.1rad",
             "--json",
         ];
         let variant = variant.map_or(vec![], |variant| vec!["--controller", variant]);
@@ -695,7 +705,7 @@ fn limit_tells_what_the_window_of_low_side_sensors_costs() {
         "--controller",
         "pdcc",
     ];
-    let options = ["--start-angle", "0.1"];
+    let options = ["--start-angle", "0.1rad"];
     let result = run(common.iter().chain(&options).chain(&["--json"])).json();
     let limited = number(&result, "limit_rpm");
     let free = number(&result["without_window"], "limit_rpm");
@@ -709,7 +719,7 @@ fn limit_tells_what_the_window_of_low_side_sensors_costs() {
     let shared = ["limit", "linix-45zwn24-40", "--board", "st-b-g431b-esc1"];
     let text = run(shared.iter().chain(&options)).stdout;
     assert!(text.contains("in-phase sensors"), "{text}");
-    let result = run(["limit", PAPER, "--start-angle", "0.1", "--json"]).json();
+    let result = run(["limit", PAPER, "--start-angle", "0.1rad", "--json"]).json();
     assert!(result["without_window"].is_null(), "{result}");
 }
 

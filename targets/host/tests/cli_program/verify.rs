@@ -281,7 +281,7 @@ fn compare_finds_fixed_and_floating_point_as_close_as_asked() {
 
 #[test]
 fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
-    let all = run(["compare", PAPER, "--start-angle", "0.1"]);
+    let all = run(["compare", PAPER, "--start-angle", "0.1rad"]);
     assert_eq!(all.code, 0, "{all:?}");
     for text in [
         "SNR",
@@ -299,10 +299,19 @@ fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
         "{}",
         all.stdout
     );
+    // A sentence for each word length.
+    let (_, closing) = all.stdout.split_once("or --json.\n").expect("is told");
+    let closing = closing.split_whitespace().collect::<Vec<_>>().join(" ");
+    let sentences: Vec<&str> = closing.split(". ").collect();
+    let [wide, narrow] = sentences[..] else {
+        panic!("{closing}");
+    };
+    assert!(wide.starts_with("Words of 32 bits suffice"), "{wide}");
+    assert!(narrow.starts_with("Words of 16 bits "), "{narrow}");
     // A distance from blocks says nothing of a current that follows the EMF.
     for (reference, has_blocks) in [("quasi_square", true), ("proportional", false)] {
         let variant = format!("pi-pwm:reference={reference}");
-        let controller = ["--controller", variant.as_str(), "--start-angle", "0.1"];
+        let controller = ["--controller", variant.as_str(), "--start-angle", "0.1rad"];
         let one = run(["compare", PAPER].iter().chain(&controller));
         let figure = "| distance from quasi-square currents, rms";
         assert_eq!(one.stdout.contains(figure), has_blocks, "{}", one.stdout);
@@ -312,7 +321,7 @@ fn compare_prints_a_row_per_controller_and_the_figures_of_merit_of_one() {
 
 #[test]
 fn compare_says_below_its_table_why_controllers_are_refused() {
-    let said = run(["compare", "odrive-d6374-150kv", "--start-angle", "0.1"]);
+    let said = run(["compare", "odrive-d6374-150kv", "--start-angle", "0.1rad"]);
     assert_eq!(said.code, 0, "{said:?}");
     let rows = said.stdout.lines().filter(|line| line.starts_with('|'));
     for row in rows.clone() {
@@ -353,7 +362,7 @@ fn compare_says_why_a_word_length_is_refused() {
         "--adc-bits",
         "16",
         "--start-angle",
-        "0.1",
+        "0.1rad",
         "--json",
     ])
     .json();

@@ -38,7 +38,7 @@ impl Plan {
     /// place of the motor file's if one is given.
     ///
     /// # Errors
-    /// No such motor or board, or diagnostics of its own controller or of all variants.
+    /// No such motor or board, or diagnostics of its own controller.
     pub fn of(given: &str, board: Option<&str>) -> Result<Self, LabError> {
         let on_board = PlantOptions::on_board(board);
         let motor = SelectedMotor::find(given, &on_board)?;
@@ -47,7 +47,7 @@ impl Plan {
         let is_paper = motor.source.name == PAPER_MOTOR;
         let mut notes = Vec::new();
         let planned = rows_of(&own.spec.inverter);
-        let mut rows = plan(&motor, planned, [is_paper, false], &mut notes)?;
+        let mut rows = plan(&motor, planned, [is_paper, false], &mut notes);
         rows.insert(0, of_file(&own));
         notes.extend(rows.iter().filter_map(limited));
         notes.extend(own.regulates_speed.then(|| NO_SPEED_LOOP.to_owned()));
@@ -72,7 +72,7 @@ impl Plan {
         let motor = SelectedMotor::find(PAPER_MOTOR, &PlantOptions::default())?;
         let own = motor.prepare_for_torque(None)?;
         let mut notes = Vec::new();
-        let rows = plan(&motor, design_table(), [true, true], &mut notes)?;
+        let rows = plan(&motor, design_table(), [true, true], &mut notes);
         notes.extend(PAPER_NOTES.map(str::to_owned));
         Ok(Self {
             given: PAPER_MOTOR.to_owned(),
@@ -217,16 +217,13 @@ fn limited(row: &Planned) -> Option<String> {
 const VERIFY_STEPS: u64 = 1_000_000;
 
 /// The rows of the table, each prepared with the captures that the motor's file allows; a variant
-/// that cannot be generated is a note.
-///
-/// # Errors
-/// If no variant can be generated: all reasons.
+/// that cannot be generated is a note: the motor file's own controller stands even alone.
 fn plan(
     motor: &SelectedMotor,
     rows: Vec<DesignRow>,
     [is_paper, is_expected]: [bool; 2],
     notes: &mut Vec<String>,
-) -> Result<Vec<Planned>, LabError> {
+) -> Vec<Planned> {
     let mut planned = Vec::new();
     // Reasons for left-out rows and captures, with their rows; no capture stands for both.
     let mut left_out: Vec<(&str, String, Vec<&str>)> = Vec::new();
@@ -282,10 +279,6 @@ fn plan(
             });
         }
     }
-    if planned.is_empty() {
-        let reasons: Vec<String> = left_out.into_iter().map(|(_, reason, _)| reason).collect();
-        return Err(LabError::Specification(reasons.join("\n")));
-    }
     // What a board without an edge timer leaves out is told once, in the user's words.
     if !motor.has_edge_timer() && !has_angle {
         left_out.retain(|(word, ..)| *word != "timer");
@@ -302,7 +295,7 @@ fn plan(
             word => format!("No run with `hall_capture={word}` of {rows}: {reason}"),
         }
     }));
-    Ok(planned)
+    planned
 }
 
 /// What is left out of a drive with a speed loop.

@@ -1,6 +1,5 @@
 //! The lines of `hexagen check`.
 
-use crate::cli::wrapped_row;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{CurrentSensing, InverterSpec, MotorSpec, RotorSensing};
 use hexagen_lab::engine::Prepared;
@@ -12,14 +11,14 @@ use std::iter::repeat;
 /// Torque of `max_current` over the demanded one above which it is told.
 const MORE: f64 = 1.01;
 
-/// About ten lines of at most 100 columns, of which the last is the `next` command; `with_reasons`: also each
-/// option chosen by default on a line of its own, with its reason.
-pub(super) fn lines(
+/// Titles and texts, of which the last is the `next` command; `with_reasons`: also each option chosen by default on
+/// a row of its own, with its reason. Of the clauses of a text the first is the most important.
+pub(super) fn rows(
     judgement: &Judgement,
     drive: &Prepared,
     with_reasons: bool,
     next: &str,
-) -> Vec<String> {
+) -> Vec<(&'static str, String)> {
     let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
     let mut rows = vec![
         ("motor", of_motor(motor)),
@@ -36,14 +35,7 @@ pub(super) fn lines(
         rows.extend(heading.zip(of_defaults(judgement)));
     }
     rows.push(("next", next.to_owned()));
-    let rows = rows
-        .iter()
-        .map(|(title, text)| format!("{title:<12}{text}"));
-    [format!("{}: {}", judgement.motor, judgement.verdict)]
-        .into_iter()
-        .chain(rows)
-        .map(|line| wrapped_row(&line))
-        .collect()
+    rows
 }
 
 /// The options that rules chose, with their reasons.
@@ -139,7 +131,7 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         "whole current"
     };
     format!(
-        "rated speed takes {}, L included, of {reach}; {lasts} to {} rpm",
+        "rated speed takes {} (with L) of {reach}; {lasts} to {} rpm",
         engineering(judgement.rating_v, "V"),
         judgement.envelope_rpm.floor(),
     )

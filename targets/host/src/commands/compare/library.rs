@@ -1,7 +1,9 @@
 //! 16-bit words over the library: the formats chosen per motor against one saturating format in SI
 //! units for all motors.
 
-use crate::cli::{Failure, PlantArguments, print_json, print_table, print_text, spinner};
+use crate::cli::{
+    Failure, PlantArguments, paragraph, print_json, print_table, print_text, spinner,
+};
 use hexagen_lab::accuracy::{LAW, compare_library};
 use hexagen_lab::report::Table;
 use hexagen_lab::text::significant;
@@ -47,14 +49,14 @@ pub fn run(plant: &PlantArguments, json: bool) -> Result<(), Failure> {
     }
     print_table(&table)?;
     for reason in library.rows.iter().filter_map(|row| row.refused.as_ref()) {
-        print_text(reason)?;
+        print_text(&paragraph(reason))?;
     }
-    print_text(&format!(
+    print_text(&paragraph(&format!(
         "Deadbeat voltage of {LAW} with 16-bit words, one step from the same state, 20 and 75 % of rated speed: signal over error in the \
          formats chosen by the generator, and in one saturating 16-bit format in SI units with {} fraction bits, the most that holds bus \
          voltages, currents and coefficients of all these motors.\n\
          Words of 16 bits: formats of each motor's own are {:.1} dB nearer to floating point, on average, than one format for all.\n\
          Words of 32 bits: compared for one motor, `hexagen compare MOTOR`.",
         library.uniform_frac_bits, library.better_by_db
-    ))
+    )))
 }

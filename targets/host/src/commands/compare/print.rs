@@ -1,6 +1,6 @@
 //! The comparison as tables.
 
-use crate::cli::{Failure, print_table, print_text};
+use crate::cli::{Failure, paragraph, print_table, print_text};
 use hexagen_lab::accuracy::{Accuracy, FigureDifference, Row};
 use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::significant;
@@ -13,15 +13,8 @@ use std::cmp::Reverse;
 pub fn of_all(rows: &[Row], own: &str) -> Result<(), Failure> {
     steps(rows)?;
     print_text("Every figure of merit: --controller with one variant, or --json.\n")?;
-    let is_own = |row: &&Row| row.controller.split(':').next() == Some(own);
-    let (of_kind, others): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(is_own);
-    let groups = [
-        (format!("{own}, the motor file's kind"), of_kind),
-        ("Other controllers".to_owned(), others),
-    ];
-    let groups = groups.iter().filter(|(_, rows)| !rows.is_empty());
-    let closing: Vec<String> = groups.map(|(whose, rows)| closing(whose, rows)).collect();
-    print_text(&closing.join("\n"))
+    let whom = format!(" for {own}, the motor file's kind, and for the others");
+    print_text(&closing(&whom, rows))
 }
 
 /// Prints the rows of one variant, with all figures of merit.
@@ -47,20 +40,20 @@ pub fn of_one(rows: &[Row], variant: &str) -> Result<(), Failure> {
             }
         }
     }
-    print_text(
+    print_text(&paragraph(
         "\nideal: with the ADC words and the state of the fixed-point drive; alone: in its own closed loop. NO: apart by \
          more than 0.5 %, or 0.05 percentage points; a word length suffices up to four times that, which no motor shows.\n",
-    )?;
-    print_text(&closing(variant, &rows.iter().collect::<Vec<_>>()))
+    ))?;
+    print_text(&closing(&format!(" for {variant}"), rows))
 }
 
 /// The tables of single steps.
 fn steps(rows: &[Row]) -> Result<(), Failure> {
     print_table(&accuracy_table(rows))?;
     for reason in rows.iter().filter_map(|row| row.refused.as_ref()) {
-        print_text(reason)?;
+        print_text(&paragraph(reason))?;
     }
-    print_text(
+    print_text(&paragraph(
         "SNR, largest error and proven bound: of the deadbeat voltage in volt (p-pwm, pi-pwm: the voltage of the current controller; phcc: the predicted error of the current times K), \
          one step from the same state, phases a and b.\n\
          Decisions: sector, commutation, limit, vector. Where they differ (by rounding of a tie), errors are not compared.\n\
@@ -68,18 +61,18 @@ fn steps(rows: &[Row]) -> Result<(), Failure> {
          Controllers of whole vectors diverge after a tie.\n\
          Duty: compare value minus exact duty, timer counts, without and with limiting, each with its proven bound and \
          half a count for the rounding of the compare value.\n",
-    )?;
+    ))?;
     print_table(&step_table(rows))
 }
 
-/// A sentence for each word length, widest first.
-fn closing(whose: &str, rows: &[&Row]) -> String {
+/// A sentence for each word length, widest first; `whom`: for whom a word length that all can have suffices.
+fn closing(whom: &str, rows: &[Row]) -> String {
     let mut words: Vec<u32> = rows.iter().map(|row| row.word).collect();
     words.sort_unstable_by_key(|word| Reverse(*word));
     words.dedup();
     let sentences = words
         .into_iter()
-        .map(|word| format!("{whose}: {}", of_word(rows, word)));
+        .map(|word| paragraph(&of_word(whom, rows, word)));
     sentences.collect::<Vec<_>>().join("\n")
 }
 
@@ -87,21 +80,14 @@ fn closing(whose: &str, rows: &[&Row]) -> String {
 const SUFFICIENT: f64 = 4.0;
 
 /// How far the drives of a word length are from floating point, at most.
-fn of_word(rows: &[&Row], word: u32) -> String {
+fn of_word(whom: &str, rows: &[Row], word: u32) -> String {
     let rows = rows.iter().filter(|row| row.word == word);
-    let compared = rows.filter_map(|row| Some((&row.controller, row.accuracy.as_ref()?)));
-    let compared: Vec<_> = compared.collect();
+    let compared = rows.filter_map(|row| Some((row.controller.as_str(), row.accuracy.as_ref()?)));
+    let compared: Vec<(&str, &Accuracy)> = compared.collect();
     let apart = compared.iter();
     let apart = apart.map(|(_, accuracy)| accuracy.one_step.compares_apart_counts);
-    let in_closed_loop = |figure: &FigureDifference| figure.in_closed_loop().0;
-    let furthest = compared.iter().filter_map(|(controller, accuracy)| {
-        let (figure, rpm) = accuracy.furthest(in_closed_loop)?;
-        Some((controller, figure, rpm))
-    });
-    let furthest = furthest
-        .max_by(|(_, one, _), (_, other, _)| in_closed_loop(one).total_cmp(&in_closed_loop(other)));
     let Some(apart) = apart.max() else {
-        return format!("with words of {word} bits nothing could be compared.");
+        return format!("With words of {word} bits nothing could be compared.");
     };
     let step = match apart {
         0 => "every compare value of a step is that of floating point".to_owned(),
@@ -115,19 +101,53 @@ fn of_word(rows: &[&Row], word: u32) -> String {
         0 => String::new(),
         trips => format!("; {trips} runs trip and are not compared"),
     };
-    let Some((controller, figure, rpm)) = furthest else {
-        return format!("with words of {word} bits {step}{trips}.");
+    let change = largest_change(&compared);
+    let change = change.map_or(String::new(), |change| format!(", and {change}"));
+    format!(
+        "{}: {step}{change}{trips}.",
+        sufficiency(whom, &compared, word)
+    )
+}
+
+/// Whether a word length suffices: for all that were compared, or not for some.
+fn sufficiency(whom: &str, compared: &[(&str, &Accuracy)], word: u32) -> String {
+    let shows = |accuracy: &Accuracy| {
+        let furthest = accuracy.furthest(|figure| figure.in_closed_loop().0);
+        furthest.is_some_and(|(figure, _)| figure.in_closed_loop().0 > SUFFICIENT)
     };
-    let (share, change) = figure.in_closed_loop();
-    let most = format!(
-        "in its own closed loop the figure that changes most, {}, changes by {change} ({controller} at {rpm:.0} rpm)",
-        figure.figure,
-    );
-    if share <= SUFFICIENT {
-        format!("words of {word} bits suffice: {step}, and {most}{trips}.")
-    } else {
-        format!("words of {word} bits show: {most}, although {step}{trips}.")
+    let showing = compared.iter().filter(|(_, accuracy)| shows(accuracy));
+    let showing: Vec<&str> = showing.map(|(controller, _)| kind(controller)).collect();
+    match showing.len() {
+        0 => format!("Words of {word} bits suffice{whom}"),
+        all if all == compared.len() => format!("Words of {word} bits do not suffice{whom}"),
+        _ => format!(
+            "Words of {word} bits suffice, but not for {}",
+            showing.join(", ")
+        ),
     }
+}
+
+/// A controller without its options.
+fn kind(controller: &str) -> &str {
+    controller.split(':').next().unwrap_or(controller)
+}
+
+/// The figure of merit that changes most in its own closed loop.
+fn largest_change(compared: &[(&str, &Accuracy)]) -> Option<String> {
+    let in_closed_loop = |figure: &FigureDifference| figure.in_closed_loop().0;
+    let furthest = compared.iter().filter_map(|(controller, accuracy)| {
+        let (figure, rpm) = accuracy.furthest(in_closed_loop)?;
+        Some((controller, figure, rpm))
+    });
+    let (controller, figure, rpm) = furthest.max_by(|(_, one, _), (_, other, _)| {
+        in_closed_loop(one).total_cmp(&in_closed_loop(other))
+    })?;
+    let (_, change) = figure.in_closed_loop();
+    Some(format!(
+        "in closed loop the figure that changes most, {}, changes by {change} ({} at {rpm:.0} rpm)",
+        figure.figure,
+        kind(controller),
+    ))
 }
 
 /// A table with the figures of each that generates.

@@ -1,0 +1,126 @@
+//! Texts in lines of at most 100 columns, and in few of them.
+
+/// Most columns of a line.
+pub const COLUMNS: usize = 100;
+
+/// A row in lines of at most 100 columns, the further ones below its text.
+pub fn wrapped_row(row: &str) -> String {
+    filled(row, "            ")
+}
+
+/// A paragraph in such lines.
+pub fn paragraph(text: &str) -> String {
+    filled(text, "")
+}
+
+/// A verdict and its rows in lines of at most 100 columns. Where they are more than `most`, each row keeps the
+/// clauses that fit into one line, and the verdict those that fit into two; `rest` says where the others stand.
+pub fn verdict_lines(head: &str, rows: &[(&str, String)], most: usize, rest: &str) -> Vec<String> {
+    let row = |(title, text): &(&str, String)| format!("{title:<12}{text}");
+    let whole: Vec<String> = std::iter::once(head.to_owned())
+        .chain(rows.iter().map(row))
+        .map(|line| wrapped_row(&line))
+        .collect();
+    let lines: usize = whole.iter().map(|row| row.lines().count()).sum();
+    if lines <= most {
+        return whole;
+    }
+    std::iter::once(short_verdict(head, rest))
+        .chain(rows.iter().map(|line| short_row(&row(line))))
+        .collect()
+}
+
+/// Between the clauses of a row.
+const CLAUSES: &str = "; ";
+
+/// The first clause of a row, and those behind it for which its line has room.
+fn short_row(row: &str) -> String {
+    let mut clauses = row.split(CLAUSES);
+    let mut line = within_a_line(clauses.next().unwrap_or_default());
+    for clause in clauses {
+        if line.len() + CLAUSES.len() + clause.len() <= COLUMNS {
+            line = [&line, clause].join(CLAUSES);
+        }
+    }
+    wrapped_row(&line)
+}
+
+/// A clause, of which a line holds the beginning if it is longer: the options of a controller.
+fn within_a_line(clause: &str) -> String {
+    let Some((end, _)) = clause.char_indices().nth(COLUMNS) else {
+        return clause.to_owned();
+    };
+    let kept = clause[..end - 2].rfind([',', ' ']).unwrap_or(0);
+    format!("{} …", &clause[..kept])
+}
+
+/// As many clauses of a verdict as fit into two lines, and how many more there are.
+fn short_verdict(head: &str, rest: &str) -> String {
+    let clauses: Vec<&str> = head.split(CLAUSES).collect();
+    let with = |kept: usize| {
+        let more = clauses.len() - kept;
+        let text = clauses[..kept].join(CLAUSES);
+        wrapped_row(&match more {
+            0 => text,
+            more => format!("{text}{CLAUSES}{more} more {rest}"),
+        })
+    };
+    let fitting = (1..=clauses.len()).rev().map(with);
+    let mut fitting = fitting.filter(|text| text.lines().count() <= 2);
+    fitting.next().unwrap_or_else(|| with(1))
+}
+
+/// A word that is longer than a line stays whole.
+fn filled(text: &str, indent: &str) -> String {
+    let options = textwrap::Options::new(COLUMNS)
+        .subsequent_indent(indent)
+        .break_words(false)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation);
+    textwrap::fill(&glued(text), options).replace(GLUE, " ")
+}
+
+/// A space at which no line ends.
+const GLUE: char = '\u{a0}';
+
+/// The text with its numbers glued to their units.
+fn glued(text: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let is_unit = |letter: &char| letter.is_alphabetic() || *letter == '%';
+    let glue = |(place, &letter): (usize, &char)| {
+        let before = place.checked_sub(1).map(|before| letters[before]);
+        let is_behind_number = before.is_some_and(|before| before.is_ascii_digit());
+        if letter == ' ' && is_behind_number && letters.get(place + 1).is_some_and(is_unit) {
+            GLUE
+        } else {
+            letter
+        }
+    };
+    letters.iter().enumerate().map(glue).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crowded_rows_keep_whole_clauses() {
+        let long = format!("at {}", "x".repeat(60));
+        let rows = [("torque", format!("{long}; {long}; of 3 Nm"))];
+        let head = format!("hub: works, but {long}; {long}; {long}; see the warnings");
+        let whole = verdict_lines(&head, &rows, 6, "with --all");
+        assert!(whole.join("\n").contains("see the warnings"), "{whole:#?}");
+        let short = verdict_lines(&head, &rows, 4, "with --all");
+        assert_eq!(short[1], format!("{:<12}{long}; of 3 Nm", "torque"));
+        assert!(short[0].ends_with("; 2 more with --all"), "{short:#?}");
+        assert_eq!(short[0].lines().count(), 2, "{short:#?}");
+        let options = format!("controller  pdcc:emf=observer,{};20 kHz", "x".repeat(90));
+        assert_eq!(short_row(&options), "controller  pdcc:emf=observer …");
+    }
+
+    #[test]
+    fn no_line_ends_between_a_number_and_its_unit() {
+        let text = format!("{} 0.27 % and 12 V", "x".repeat(94));
+        let told = paragraph(&text);
+        assert_eq!(told.lines().nth(1), Some("0.27 % and 12 V"), "{told}");
+    }
+}
