@@ -27,10 +27,12 @@ pub struct PiPwm<W> {
 /// Coefficients of a reference that turns.
 #[derive(Clone, Debug)]
 struct Turning<W> {
-    k_due: Coefficient<W>,
-    k_lead: Coefficient<W>,
-    /// Of the dead-time compensation.
-    k_di: Coefficient<W>,
+    /// `k_due`.
+    due: Coefficient<W>,
+    /// `k_lead`.
+    lead: Coefficient<W>,
+    /// `k_di`, of the dead-time compensation.
+    di: Coefficient<W>,
 }
 
 impl<W: Word> Turning<W> {
@@ -41,9 +43,9 @@ impl<W: Word> Turning<W> {
         let DiscretePhase { a, b } = DiscretePhase::new(spec);
         let compensates = scale.variant.compensates();
         Ok(Some(Self {
-            k_due: scale.coefficient("k_due", k_p * b)?,
-            k_lead: scale.coefficient("k_lead", -a)?,
-            k_di: scale.only_if(compensates, "k_di", scale.ohm / b)?,
+            due: scale.coefficient("k_due", k_p * b)?,
+            lead: scale.coefficient("k_lead", -a)?,
+            di: scale.only_if(compensates, "k_di", scale.ohm / b)?,
         }))
     }
 }
@@ -82,8 +84,8 @@ impl<W: Word> PiPwm<W> {
         let drop = both(|x| self.k_drop.mul(now.i[x]));
         let (due, forward) = match &self.turning {
             Some(turning) => (
-                now.j_due.map(|j_x| turning.k_due.mul(j_x)),
-                both(|x| now.e[x] + now.j[x] + turning.k_lead.mul(now.j_begin[x])),
+                now.j_due.map(|j_x| turning.due.mul(j_x)),
+                both(|x| now.e[x] + now.j[x] + turning.lead.mul(now.j_begin[x])),
             ),
             None => (now.j, now.e),
         };
@@ -106,7 +108,7 @@ impl<W: Word> PiPwm<W> {
             within(moved, low, high)
         });
         let flow = match &self.turning {
-            Some(turning) => both(|x| turning.k_di.mul(now.i[x])),
+            Some(turning) => both(|x| turning.di.mul(now.i[x])),
             None => drop.map(|drop| -drop),
         };
         Decision {
