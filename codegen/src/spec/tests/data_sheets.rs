@@ -430,7 +430,7 @@ fn constants_without_basis_are_taken_only_where_one_reading_fits() {
         let text = format!(
             "pole_pairs = 8\nresistance = \"0.573 ohm terminal\"\ninductance = \"0.301 mH terminal\"\n\
              speed_constant = \"236 rpm/V\"\ntorque_constant = \"{} mNm/A\"\nemf_shape = \"{shape}\"\n\
-             rated_current = \"3.29 A peak\"\nrated_speed = \"2000 rpm\"",
+             rated_current = \"3.29 A peak\"\nrated_speed = \"1000 rpm\"",
             40.463 * torque
         );
         let ast = parse_toml(&newcomer(&text, 24, 8), "ec45.toml").expect("is TOML");

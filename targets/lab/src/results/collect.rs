@@ -430,7 +430,7 @@ mod tests {
         motor.ast = stating(&motor.ast, "motor", inertia);
         let options = "speed_loop=on,speed_bandwidth=5Hz,acceleration_limit=500rpm/s";
         apply_variant(&mut motor.ast, &format!("pdcc:{options}")).expect("is a variant");
-        let rows = plan(&motor, design_table(), [false; 2], &mut Vec::new()).expect("rows");
+        let rows = plan(&motor, design_table(), [false; 2], &mut Vec::new());
         assert_eq!(rows.len(), design_table().len());
         for row in &rows {
             for (_, drive) in &row.drives {
@@ -470,10 +470,12 @@ mod tests {
     }
 
     #[test]
-    fn a_motor_without_any_valid_variant_is_an_error_and_no_empty_page() {
+    fn variants_that_cannot_be_generated_are_left_out_with_the_reason() {
         let mut motor = paper_motor();
         motor.ast.motor.fields.clear();
-        let error = plan(&motor, design_table(), [false; 2], &mut Vec::new()).expect_err("no rows");
-        assert!(error.to_string().contains("`pole_pairs`"), "{error}");
+        let mut notes = Vec::new();
+        assert!(plan(&motor, design_table(), [false; 2], &mut notes).is_empty());
+        let notes = notes.join("\n");
+        assert!(notes.contains("`pole_pairs`"), "{notes}");
     }
 }
