@@ -246,7 +246,7 @@ fn current_sensors(spec: &Spec) -> String {
     };
     let phases = inverter.sensed_phases.phases().iter();
     let phases: Vec<&str> = phases.map(|phase| ["a", "b", "c"][*phase]).collect();
-    let delay = inverter.sampling_delay();
+    let delay = inverter.sampling_delay(spec.controller.common().delay);
     let instant = if delay > 0.0 {
         let delay = engineering(delay, "s");
         format!(", sampled {delay} (half the dead time) behind the turning point of the timer")

@@ -1,14 +1,14 @@
 //! Torque ripple of a drive whose Hall edges are seen at samples only.
 
-use super::{RotorSensing, Spec};
+use super::{Reference, RotorSensing, Spec};
 
 /// Ripple per radian of such a jump and per unit of [`Spec::coarseness`] (simulated over the library's motors at
 /// speeds from 37 to 100 % of the rated one).
 const OF_CURRENT: f64 = 0.75;
 
 impl Spec {
-    /// Peak-to-peak ripple at rated speed over the mean torque, of a drive that models the EMF by the rotor's angle and
-    /// sees Hall edges at samples only; `None` for any other drive.
+    /// Peak-to-peak ripple at rated speed over the mean torque, of a proportional current and an EMF that both follow
+    /// the rotor's angle, with Hall edges that are seen at samples only; `None` for any other drive.
     ///
     /// An edge is late by up to a control period, in which the rotor turns by d radians, so the angle jumps by up to
     /// d. The proportional current no longer fits the EMF then, by d times the steepness of the EMF's length; and
@@ -16,8 +16,8 @@ impl Spec {
     pub fn sampled_ripple(&self) -> Option<f64> {
         let common = self.controller.common();
         let is_sampled = self.inverter.rotor_sensing == RotorSensing::SampledHalls;
-        let is_modelled = common.emf.is_modelled() && self.controller.modulates();
-        (is_sampled && is_modelled).then(|| {
+        let follows = common.emf.is_modelled() && common.reference == Reference::Proportional;
+        (is_sampled && follows && self.controller.modulates()).then(|| {
             let jump = self.motor.rated_turn(self.inverter.t_s).to_radians();
             jump * self
                 .motor

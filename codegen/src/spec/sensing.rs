@@ -129,9 +129,11 @@ impl InverterSpec {
 
     /// Time from the turning point at which a control period begins to the sampling instant, second; negative
     /// before it. Each edge of a leg comes late by the dead time or not at all, whichever way its current flows,
-    /// so the middle of its pulses, at which the sample is the mean of the current, comes half of it late.
-    pub fn sampling_delay(&self) -> f64 {
+    /// so the middle of its pulses, at which the sample is the mean of the current, comes half of it late. A drive
+    /// without computation delay samples before: its command acts from the turning point on.
+    pub fn sampling_delay(&self, delay: u32) -> f64 {
         match self.current_sensing {
+            CurrentSensing::InPhase if delay == 0 => 0.0,
             CurrentSensing::InPhase => self.dead_time / 2.0,
             CurrentSensing::LowSide(times) => -times.lead,
         }

@@ -230,3 +230,19 @@ fn no_disturbance_changes_the_current_or_makes_it_ripple() {
         assert!(misses.iter().any(here), "{motor} {disturbance:?} is right");
     }
 }
+
+/// A PI regulator alone follows a reference that turns late: of 250 Hz and more it loses torque.
+#[test]
+fn pi_control_keeps_the_torque_where_the_reference_turns_fast() {
+    for motor in ["mit-mini-cheetah", "odrive-d6374-150kv", "velineon-3500"] {
+        for options in ["", ":delay=0", ":bandwidth=300Hz"] {
+            let source = MotorSource::of_library(motor).expect("is in the library");
+            let drive = prepare(&source, Some(&format!("pi-pwm{options}"))).expect("generates");
+            let demand = drive.demand();
+            let run = drive.measure_at(drive.spec.motor.rated_speed, demand);
+            let mean = run.expect("runs").figures.mean_torque_nm;
+            let torque = mean.map_or(0.0, |mean| 100.0 * mean / demand);
+            assert!((torque - 100.0).abs() < 1.0, "{motor}{options}: {torque}");
+        }
+    }
+}

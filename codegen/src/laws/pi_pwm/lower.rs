@@ -116,6 +116,48 @@ impl<'l, 'b> Regulator<'l, 'b> {
             .options
             .turns_reference()
             .then(|| Turning::new(step, self.gain, front.reference));
+        let integral = read(memories);
+        let Regulated { u, forward, shifts } = self.regulated(step, front, integral, turning);
+        let emf = front.e.map(|e| move || e);
+        let common_mode = CommonModeRule::new(l, self.options.common_mode);
+        let hexagon = Hexagon {
+            bus: common_mode.reach(l, front.bus),
+            third: front.third,
+            lifts: common_mode.lifts(front.bus),
+        };
+        let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
+        let limited = common_mode.second_readable(l, front.third, front.bus, limited);
+        let mut remembered = front.turned(l, &limited);
+        l.b.stage("integrate", INTEGRATION);
+        let target = forward.map_or(limited.u, |forward| limited.u - forward);
+        named! {
+            let distance = target - integral;
+            let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
+        }
+        l.state_phase_volts("integral", integral_now, INTEGRAL);
+        let modulator = Modulator {
+            bus: front.bus,
+            shifts,
+        };
+        let command = modulator.three(l, &limited, common_mode);
+        remembered.extend(kept(memories, integral_now));
+        remembered.extend(
+            turning
+                .into_iter()
+                .flat_map(|turning| turning.kept(front.reference)),
+        );
+        step.remember(front, &command, Some(limited.u), None, remembered);
+    }
+
+    /// The voltage that the regulators of the phases ask for.
+    fn regulated(
+        &self,
+        step: &CurrentLoop<'_, 'b>,
+        front: &Front<'b>,
+        integral: Phases<'b>,
+        turning: Option<Turning<'b>>,
+    ) -> Regulated<'b> {
+        let l = self.l;
         let docs: &[&str] = match turning {
             None => &[
                 "PI regulator per phase: v = k_p (i_ref - i) + integral, plus the EMF if it is fed forward.",
@@ -123,7 +165,6 @@ impl<'l, 'b> Regulator<'l, 'b> {
             Some(_) => TURNING,
         };
         l.b.stage("regulate", docs);
-        let integral = read(memories);
         let drop = self.k_drop * front.currents.pair();
         let held = self.options.dead_time_compensation.then(|| {
             if turning.is_some() {
@@ -154,35 +195,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let u = unlimited_voltage(l, asked);
         let stiffness = turning.map_or(self.gain, |_| step.design.k_di);
         let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, stiffness));
-        let emf = front.e.map(|e| move || e);
-        let common_mode = CommonModeRule::new(l, self.options.common_mode);
-        let hexagon = Hexagon {
-            bus: common_mode.reach(l, front.bus),
-            third: front.third,
-            lifts: common_mode.lifts(front.bus),
-        };
-        let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
-        let limited = common_mode.second_readable(l, front.third, front.bus, limited);
-        let mut remembered = front.turned(l, &limited);
-        l.b.stage("integrate", INTEGRATION);
-        let target = forward.map_or(limited.u, |forward| limited.u - forward);
-        named! {
-            let distance = target - integral;
-            let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
-        }
-        l.state_phase_volts("integral", integral_now, INTEGRAL);
-        let modulator = Modulator {
-            bus: front.bus,
-            shifts,
-        };
-        let command = modulator.three(l, &limited, common_mode);
-        remembered.extend(kept(memories, integral_now));
-        remembered.extend(
-            turning
-                .into_iter()
-                .flat_map(|turning| turning.kept(front.reference)),
-        );
-        step.remember(front, &command, Some(limited.u), None, remembered);
+        Regulated { u, forward, shifts }
     }
 
     /// One regulator for the current of the conducting pair, and the pulses of its line voltage.
@@ -252,6 +265,16 @@ fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
     Interval::new(-limit, limit - 1)
 }
 
+/// What the regulators of the phases ask for.
+struct Regulated<'b> {
+    /// Voltage before the limit.
+    u: Phases<'b>,
+    /// What is fed forward of it.
+    forward: Option<Phases<'b>>,
+    /// Dead-time compensation of the compare values.
+    shifts: Option<Phases<'b, 3>>,
+}
+
 /// A reference that turns: those of the last steps, as voltages K i_ref.
 #[derive(Clone, Copy)]
 struct Turning<'b> {
@@ -270,10 +293,10 @@ impl<'b> Turning<'b> {
         let (l, word) = (step.l, step.options.word);
         let most = reference.0.map(|phase| phase.interval().magnitude());
         let range = Interval::symmetric(most[0].max(most[1]));
-        let doc = "Reference at the end of the period that begins now, as a voltage.";
+        let doc = "Reference at the begin of the next step's target period, as a voltage.";
         let begin =
             (step.options.delay == 1).then(|| l.memories(["j_a_next", "j_b_next"], range, doc));
-        let doc = "Reference at the next sample, as a voltage.";
+        let doc = "Reference that belongs to the next sample, as a voltage.";
         let sample = l.memories(["j_a_due", "j_b_due"], range, doc);
         let pole = 1.0 - step.design.k_decay;
         let doc = "Share of the reference at the begin of the target period that is left at its end, negative.";

@@ -24,7 +24,8 @@ use self::inverter::Inverter;
 use self::motor::Motor;
 use super::reader::Reader;
 use super::{Spec, SpecAst, schema};
-use crate::diagnostics::{Code, Collector, Diagnostic, Diagnostics, catalogue, engineering};
+use crate::diagnostics::catalogue::Part;
+use crate::diagnostics::{Code, Collector, Diagnostic, Diagnostics, catalogue};
 
 /// Checks a specification and fills in every default.
 ///
@@ -90,6 +91,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         &mut warnings,
     );
 
+    let period = inverter.period.as_ref().map(|period| &period.part);
     match (motor.finish(), finished, controller) {
         (Some(motor), Some(inverter), Some(controller)) => {
             let spec = Spec {
@@ -98,7 +100,9 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
                 inverter,
                 controller,
             };
-            check_sampled_halls(&inverter_reader, &spec, &mut warnings);
+            if let Some(period) = period {
+                check_sampled_halls(period, &spec, &mut warnings);
+            }
             let origins = Origins::new(ast, &whole_inverter, &whole_controller, warnings);
             errors.into_result((spec, origins))
         }
@@ -112,15 +116,12 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
 const MOST_RIPPLE: f64 = 0.03;
 
 /// Warns where Hall edges that are seen at samples only make the torque ripple.
-fn check_sampled_halls(reader: &Reader, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
+fn check_sampled_halls(period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
     let Some(ripple) = spec.sampled_ripple().filter(|ripple| *ripple > MOST_RIPPLE) else {
         return;
     };
-    let period = reader.part("f_pwm", || {
-        engineering(spec.inverter.pwm_period().recip(), "Hz")
-    });
     let degrees = spec.motor.rated_turn(spec.inverter.t_s);
-    warnings.push(catalogue::sampled_halls(&period, degrees, ripple));
+    warnings.push(catalogue::sampled_halls(period, degrees, ripple));
 }
 
 /// Fields that options need, and that are stated but in error.

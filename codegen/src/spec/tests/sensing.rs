@@ -193,3 +193,14 @@ fn an_amplifier_that_saturates_bounds_the_trip_level() {
     let text = told("adc_range = \"40 A\"\namplifier_swing = \"1.35 V\"");
     assert!(text.contains("has an effect only with `shunt`"), "{text}");
 }
+
+#[test]
+fn currents_are_sampled_in_the_middle_of_pulses_that_the_dead_time_delays() {
+    let in_phase = with_lines("adc_range = \"40 A\"\ndead_time = \"600 ns\"");
+    assert!((in_phase.sampling_delay(1) - 300e-9).abs() < 1e-15);
+    // A command that acts at once begins before such a sample.
+    assert_eq!(in_phase.sampling_delay(0), 0.0);
+    let shunts = "adc_range = \"40 A\"\ncurrent_sensing = \"low_side\"\naperture_time = \"200 ns\"\n\
+         dead_time = \"600 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"0 us\"\nsampling_lead = \"100 ns\"";
+    assert!((with_lines(shunts).sampling_delay(1) + 100e-9).abs() < 1e-15);
+}

@@ -33,25 +33,44 @@ pub fn verdict_lines(head: &str, rows: &[(&str, String)], most: usize, rest: &st
 /// Between the clauses of a row.
 const CLAUSES: &str = "; ";
 
-/// The first clause of a row, and those behind it for which its line has room.
+/// Behind a row of which clauses are left out.
+const MORE: &str = " …";
+
+/// The first clause of a row, and those behind it for which its line has room; a row of one clause, as a path or a
+/// command is, stays whole.
 fn short_row(row: &str) -> String {
-    let mut clauses = row.split(CLAUSES);
-    let mut line = within_a_line(clauses.next().unwrap_or_default());
-    for clause in clauses {
-        if line.len() + CLAUSES.len() + clause.len() <= COLUMNS {
-            line = [&line, clause].join(CLAUSES);
+    let clauses: Vec<&str> = row.split(CLAUSES).collect();
+    let [first, further @ ..] = clauses.as_slice() else {
+        return String::new();
+    };
+    if further.is_empty() {
+        return wrapped_row(row);
+    }
+    let columns = |text: &str| text.chars().count();
+    let mut line = within_a_line(first);
+    let mut left_out = 0;
+    for clause in further {
+        let most = COLUMNS - columns(MORE);
+        if columns(&line) + columns(CLAUSES) + columns(clause) <= most {
+            line = [&line, *clause].join(CLAUSES);
+        } else {
+            left_out += 1;
         }
+    }
+    if left_out > 0 && !line.ends_with(MORE) {
+        line.push_str(MORE);
     }
     wrapped_row(&line)
 }
 
 /// A clause, of which a line holds the beginning if it is longer: the options of a controller.
 fn within_a_line(clause: &str) -> String {
-    let Some((end, _)) = clause.char_indices().nth(COLUMNS) else {
+    let most = COLUMNS - MORE.chars().count();
+    let Some((end, _)) = clause.char_indices().nth(most) else {
         return clause.to_owned();
     };
-    let kept = clause[..end - 2].rfind([',', ' ']).unwrap_or(0);
-    format!("{} …", &clause[..kept])
+    let kept = clause[..end].rfind([',', ' ']).unwrap_or(0);
+    format!("{}{MORE}", &clause[..kept])
 }
 
 /// As many clauses of a verdict as fit into two lines, and how many more there are.
@@ -110,11 +129,19 @@ mod tests {
         let whole = verdict_lines(&head, &rows, 6, "with --all");
         assert!(whole.join("\n").contains("see the warnings"), "{whole:#?}");
         let short = verdict_lines(&head, &rows, 4, "with --all");
-        assert_eq!(short[1], format!("{:<12}{long}; of 3 Nm", "torque"));
+        assert_eq!(short[1], format!("{:<12}{long}; of 3 Nm …", "torque"));
         assert!(short[0].ends_with("; 2 more with --all"), "{short:#?}");
         assert_eq!(short[0].lines().count(), 2, "{short:#?}");
         let options = format!("controller  pdcc:emf=observer,{};20 kHz", "x".repeat(90));
         assert_eq!(short_row(&options), "controller  pdcc:emf=observer …");
+    }
+
+    #[test]
+    fn a_path_stays_whole_and_letters_of_two_bytes_are_one_column() {
+        let path = format!("page        /home/j\u{fc}rgen/{}.html", "x".repeat(90));
+        assert!(short_row(&path).contains(&path[12..]), "{path}");
+        let row = format!("{}; {}", "\u{fc}".repeat(98), "x".repeat(9));
+        assert_eq!(short_row(&row).lines().next(), Some(" …"));
     }
 
     #[test]

@@ -4,7 +4,6 @@ use crate::newcomer::assert_lines;
 use crate::support::{PAPER, Said, hexagen, run};
 use hexagen_codegen::diagnostics::Code;
 use std::fs;
-use std::process::{Command, Stdio};
 
 /// A drive with every block that is optional, of which several are worth a warning.
 const CROWDED: &str = r#"
@@ -232,6 +231,7 @@ fn the_verdict_is_coloured_on_a_terminal() {
 }
 
 /// Answers of somebody with a data sheet, some of them wrong.
+#[cfg(target_os = "linux")]
 const ANSWERS: [&str; 31] = [
     "",
     "8",
@@ -271,6 +271,7 @@ const ANSWERS: [&str; 31] = [
 #[test]
 fn the_questions_of_a_new_file_lead_to_a_drive_that_works() {
     use std::io::Write;
+    use std::process::{Command, Stdio};
     let folder = tempfile::tempdir().expect("a temporary folder");
     let program = format!("'{}' new db42.toml", env!("CARGO_BIN_EXE_hexagen"));
     let mut asked = Command::new("script")

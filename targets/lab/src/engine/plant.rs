@@ -29,7 +29,7 @@ pub fn plant_of(spec: &Spec) -> PlantParams {
                 offset: f64::from(sensor.offset),
                 most: inverter.amplifier_reach,
                 noise: 0.0,
-                instant: inverter.sampling_delay()
+                instant: inverter.sampling_delay(spec.controller.common().delay)
                     + times.map_or(0.0, |times| {
                         f64::from(place / times.converters) * times.conversion
                     }),

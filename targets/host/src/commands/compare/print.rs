@@ -81,8 +81,9 @@ const SUFFICIENT: f64 = 4.0;
 
 /// How far the drives of a word length are from floating point, at most.
 fn of_word(whom: &str, rows: &[Row], word: u32) -> String {
-    let rows = rows.iter().filter(|row| row.word == word);
-    let compared = rows.filter_map(|row| Some((row.controller.as_str(), row.accuracy.as_ref()?)));
+    let of_word = || rows.iter().filter(|row| row.word == word);
+    let compared =
+        of_word().filter_map(|row| Some((row.controller.as_str(), row.accuracy.as_ref()?)));
     let compared: Vec<(&str, &Accuracy)> = compared.collect();
     let apart = compared.iter();
     let apart = apart.map(|(_, accuracy)| accuracy.one_step.compares_apart_counts);
@@ -105,24 +106,30 @@ fn of_word(whom: &str, rows: &[Row], word: u32) -> String {
     let change = change.map_or(String::new(), |change| format!(", and {change}"));
     format!(
         "{}: {step}{change}{trips}.",
-        sufficiency(whom, &compared, word)
+        sufficiency(whom, &of_word().collect::<Vec<_>>())
     )
 }
 
-/// Whether a word length suffices: for all that were compared, or not for some.
-fn sufficiency(whom: &str, compared: &[(&str, &Accuracy)], word: u32) -> String {
-    let shows = |accuracy: &Accuracy| {
+/// Whether the word length of these rows suffices: for all of them, or not for some. A drive that is refused, or trips, is
+/// not one of those for which it does.
+fn sufficiency(whom: &str, rows: &[&Row]) -> String {
+    let suffices = |accuracy: &Accuracy| {
         let furthest = accuracy.furthest(|figure| figure.in_closed_loop().0);
-        furthest.is_some_and(|(figure, _)| figure.in_closed_loop().0 > SUFFICIENT)
+        let is_near = furthest.is_none_or(|(figure, _)| figure.in_closed_loop().0 <= SUFFICIENT);
+        is_near && accuracy.closed_loop.iter().all(|at| at.tripped.is_none())
     };
-    let showing = compared.iter().filter(|(_, accuracy)| shows(accuracy));
-    let showing: Vec<&str> = showing.map(|(controller, _)| kind(controller)).collect();
-    match showing.len() {
+    let short = rows
+        .iter()
+        .filter(|row| !row.accuracy.as_ref().is_some_and(suffices));
+    let mut short: Vec<&str> = short.map(|row| row.controller.as_str()).collect();
+    short.dedup();
+    let word = rows.first().map_or(0, |row| row.word);
+    match short.len() {
         0 => format!("Words of {word} bits suffice{whom}"),
-        all if all == compared.len() => format!("Words of {word} bits do not suffice{whom}"),
+        all if all == rows.len() => format!("Words of {word} bits do not suffice{whom}"),
         _ => format!(
             "Words of {word} bits suffice, but not for {}",
-            showing.join(", ")
+            short.join(" and ")
         ),
     }
 }
