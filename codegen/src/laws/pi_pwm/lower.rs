@@ -116,8 +116,12 @@ impl<'l, 'b> Regulator<'l, 'b> {
             .options
             .turns_reference()
             .then(|| Turning::new(step, self.gain, front.reference));
-        let integral = read(memories);
-        let Regulated { u, forward, shifts } = self.regulated(step, front, integral, turning);
+        let Regulated {
+            integral,
+            u,
+            forward,
+            shifts,
+        } = self.regulated(step, front, memories, turning);
         let emf = front.e.map(|e| move || e);
         let common_mode = CommonModeRule::new(l, self.options.common_mode);
         let hexagon = Hexagon {
@@ -154,7 +158,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         &self,
         step: &CurrentLoop<'_, 'b>,
         front: &Front<'b>,
-        integral: Phases<'b>,
+        memories: [Memory<'b>; 2],
         turning: Option<Turning<'b>>,
     ) -> Regulated<'b> {
         let l = self.l;
@@ -165,10 +169,14 @@ impl<'l, 'b> Regulator<'l, 'b> {
             Some(_) => TURNING,
         };
         l.b.stage("regulate", docs);
+        let integral = read(memories);
         let drop = self.k_drop * front.currents.pair();
         let held = self.options.dead_time_compensation.then(|| {
             if turning.is_some() {
-                return step.k_di() * front.currents.pair();
+                named! {
+                    let held = step.k_di() * front.currents.pair();
+                }
+                return held;
             }
             named! {
                 let drop = drop;
@@ -195,7 +203,12 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let u = unlimited_voltage(l, asked);
         let stiffness = turning.map_or(self.gain, |_| step.design.k_di);
         let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, stiffness));
-        Regulated { u, forward, shifts }
+        Regulated {
+            integral,
+            u,
+            forward,
+            shifts,
+        }
     }
 
     /// One regulator for the current of the conducting pair, and the pulses of its line voltage.
@@ -267,6 +280,8 @@ fn integral_range(l: &Lowering<'_>, options: &PiPwmSpec) -> Interval {
 
 /// What the regulators of the phases ask for.
 struct Regulated<'b> {
+    /// Integral part before the step.
+    integral: Phases<'b>,
     /// Voltage before the limit.
     u: Phases<'b>,
     /// What is fed forward of it.
