@@ -36,23 +36,16 @@ const CLAUSES: &str = "; ";
 /// Behind a row of which clauses are left out.
 const MORE: &str = " …";
 
-/// The first clause of a row, and those behind it for which its line has room; a row of one clause, as a path or a
-/// command is, stays whole.
+/// The first clause of a row, and those behind it for which its line has room.
 fn short_row(row: &str) -> String {
-    let clauses: Vec<&str> = row.split(CLAUSES).collect();
-    let [first, further @ ..] = clauses.as_slice() else {
-        return String::new();
-    };
-    if further.is_empty() {
-        return wrapped_row(row);
-    }
     let columns = |text: &str| text.chars().count();
-    let mut line = within_a_line(first);
+    let most = COLUMNS - columns(MORE);
+    let mut clauses = row.split(CLAUSES);
+    let mut line = within_a_line(clauses.next().unwrap_or_default());
     let mut left_out = 0;
-    for clause in further {
-        let most = COLUMNS - columns(MORE);
+    for clause in clauses {
         if columns(&line) + columns(CLAUSES) + columns(clause) <= most {
-            line = [&line, *clause].join(CLAUSES);
+            line = [&line, clause].join(CLAUSES);
         } else {
             left_out += 1;
         }
@@ -63,14 +56,16 @@ fn short_row(row: &str) -> String {
     wrapped_row(&line)
 }
 
-/// A clause, of which a line holds the beginning if it is longer: the options of a controller.
+/// A clause; of the options of a controller, which have commas, those that a line holds. A path or a command stays whole.
 fn within_a_line(clause: &str) -> String {
     let most = COLUMNS - MORE.chars().count();
     let Some((end, _)) = clause.char_indices().nth(most) else {
         return clause.to_owned();
     };
-    let kept = clause[..end].rfind([',', ' ']).unwrap_or(0);
-    format!("{}{MORE}", &clause[..kept])
+    match clause[..end].rfind(',') {
+        Some(kept) => format!("{}{MORE}", &clause[..kept]),
+        None => clause.to_owned(),
+    }
 }
 
 /// As many clauses of a verdict as fit into two lines, and how many more there are.
@@ -140,8 +135,9 @@ mod tests {
     fn a_path_stays_whole_and_letters_of_two_bytes_are_one_column() {
         let path = format!("page        /home/j\u{fc}rgen/{}.html", "x".repeat(90));
         assert!(short_row(&path).contains(&path[12..]), "{path}");
-        let row = format!("{}; {}", "\u{fc}".repeat(98), "x".repeat(9));
-        assert_eq!(short_row(&row).lines().next(), Some(" …"));
+        let umlauts = "\u{fc}".repeat(90);
+        let row = format!("{umlauts}; {}", "x".repeat(9));
+        assert_eq!(short_row(&row), format!("{umlauts} …"));
     }
 
     #[test]
