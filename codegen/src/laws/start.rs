@@ -48,19 +48,19 @@ fn start_speed(spec: &Spec, design: &LoopDesign) -> f64 {
     let has_angle = spec.angle_sensor().is_some();
     match spec.waiting_speed() {
         Some(from) if has_angle || inverter.minimum_speed <= from.max(begins) => {
-            emf_within_bus(spec)
+            emf_within_bus(spec, 1.0)
         }
         _ => begins,
     }
 }
 
-/// Speed up to which the lowest bus, as far as legs reach, exceeds the EMF between two terminals; at most the
-/// greatest speed of the drive.
-fn emf_within_bus(spec: &Spec) -> f64 {
+/// Speed up to which a part of the lowest bus, as far as legs reach, exceeds the EMF between two terminals; at most
+/// the greatest speed of the drive.
+fn emf_within_bus(spec: &Spec, part: f64) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
     let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let lowest = spec.reach_share() * inverter.lowest_bus();
-    (lowest / line).min(inverter.maximum_speed)
+    (part * lowest / line).min(inverter.maximum_speed)
 }
 
 /// Greatest rotor speed, mechanical rad/s, at which control may begin without the EMF.
@@ -76,10 +76,8 @@ fn emf_within_bus(spec: &Spec) -> f64 {
 /// lie where the pulse ripple crosses its mean.
 fn blind_start(spec: &Spec, design: &LoopDesign) -> f64 {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let line = motor.emf_shape.line_to_line_peak() * motor.emf_constant;
     let options = spec.controller.common();
-    let lowest = spec.reach_share() * inverter.lowest_bus();
-    let most = emf_within_bus(spec);
+    let most = emf_within_bus(spec, 1.0);
     let turn = most * f64::from(motor.pole_pairs) * inverter.t_s;
     let filter = options.emf_filter;
     let estimates = options.emf == EmfSource::Estimated;
@@ -92,7 +90,7 @@ fn blind_start(spec: &Spec, design: &LoopDesign) -> f64 {
         ..design.clone()
     };
     let start = law.start(slow);
-    let met = most.min(start.part_of_bus * lowest / line);
+    let met = emf_within_bus(spec, start.part_of_bus);
     let periods = f64::from(options.delay + 1);
     let vector = design.plant.gain * 2.0 / 3.0 * spec.reach_share() * inverter.greatest_bus();
     let per_volt = law

@@ -62,6 +62,7 @@ pub use model::{
 };
 pub use option_texts::help as option_help;
 pub use rule::Rule;
+pub use sampled_halls::MOST_RIPPLE;
 pub use schema::section_of;
 pub use sensing::{
     CurrentSensing, CurrentSensor, CurrentSum, RATIO_BITS, SensedPhases, SensingTimes,

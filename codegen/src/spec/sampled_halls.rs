@@ -2,6 +2,9 @@
 
 use super::{Reference, RotorSensing, Spec};
 
+/// Greatest ripple of a drive that is right, over the mean torque, where the rotor turns little in a control period.
+pub const MOST_RIPPLE: f64 = 0.03;
+
 /// Ripple per radian of such a jump and per unit of [`Spec::coarseness`] (simulated over the library's motors at
 /// speeds from 37 to 100 % of the rated one).
 const OF_CURRENT: f64 = 0.75;

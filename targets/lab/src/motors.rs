@@ -5,8 +5,7 @@ use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_
 use crate::period::degrees_per_period;
 use crate::plant::{Mechanics, Plant};
 use crate::{LabError, Progress};
-use hexagen_codegen::spec::Envelope;
-use hexagen_codegen::spec::Spec;
+use hexagen_codegen::spec::{Envelope, MOST_RIPPLE, Spec};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -24,7 +23,7 @@ pub const TORQUE: f64 = 1.0;
 
 /// Greatest ripple, percent: up to [`COARSE`] electrical degrees per control period at rated speed,
 /// and above.
-pub const RIPPLE: [f64; 2] = [3.0, 7.0];
+pub const RIPPLE: [f64; 2] = [100.0 * MOST_RIPPLE, 7.0];
 
 /// Electrical degrees per control period.
 pub const COARSE: f64 = 8.0;

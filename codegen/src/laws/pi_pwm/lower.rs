@@ -5,7 +5,7 @@ use crate::blocks::{
     CommonModeRule, Hexagon, Lowering, Modulator, Priority, Scale, across_pair, limit_line,
     pair_signs,
 };
-use crate::ir::{Coefficient, Expr, Interval, Memory, Phases, named};
+use crate::ir::{Coefficient, Expr, Interval, Memory, Named, Phases, named};
 use crate::laws::current_loop::{
     CurrentLoop, EmfUse, Front, LoopDesign, Needs, Remembered, kept, lower_with, read,
     unlimited_voltage,
@@ -188,16 +188,10 @@ impl<'l, 'b> Regulator<'l, 'b> {
         named! {
             let p = due.unwrap_or(front.reference) + drop;
         }
-        let led = turning.map(|turning| turning.led(front.reference));
-        let forward = match (front.e, led) {
-            (Some(e), Some(led)) => {
-                named! {
-                    let forward = e + led;
-                }
-                Some(forward)
-            }
-            (e, led) => e.or(led),
-        };
+        let forward = front.e.map(|e| match turning {
+            Some(turning) => (e + turning.led(front.reference)).named("forward"),
+            None => e,
+        });
         let asked = p + integral;
         let asked = forward.map_or(asked, |forward| asked + forward);
         let u = unlimited_voltage(l, asked);

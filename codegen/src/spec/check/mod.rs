@@ -23,7 +23,7 @@ pub use origins::{Origin, Origins};
 use self::inverter::Inverter;
 use self::motor::Motor;
 use super::reader::Reader;
-use super::{Spec, SpecAst, schema};
+use super::{MOST_RIPPLE, Spec, SpecAst, schema};
 use crate::diagnostics::catalogue::Part;
 use crate::diagnostics::{Code, Collector, Diagnostic, Diagnostics, catalogue};
 
@@ -111,9 +111,6 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         })),
     }
 }
-
-/// Ripple above which Hall edges should be captured by a timer, over the mean torque: that of a drive with a timer.
-const MOST_RIPPLE: f64 = 0.03;
 
 /// Warns where Hall edges that are seen at samples only make the torque ripple.
 fn check_sampled_halls(period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
