@@ -138,10 +138,10 @@ impl Disturbance {
     }
 }
 
-/// A drive of a motor whose file states [`DEAD_TIME`], or as it is.
-fn drive(motor: &str, variant: &str, disturbance: Disturbance) -> Prepared {
+/// A drive of a motor as its file has it, or with [`DEAD_TIME`] stated.
+fn drive(motor: &str, variant: &str, states_dead_time: bool) -> Prepared {
     let mut source = MotorSource::of_library(motor).expect("is in the library");
-    if disturbance == StatedDeadTime {
+    if states_dead_time {
         let is_other = |line: &&str| !line.starts_with("dead_time =");
         let lines: Vec<&str> = source.text.lines().filter(is_other).collect();
         let text = lines.join("\n") + "\n";
@@ -201,15 +201,23 @@ const QUADRANTS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -
 fn no_disturbance_changes_the_current_or_makes_it_ripple() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let drives = motors.iter().flat_map(|motor| {
-        let drive = |variant, disturbance| drive(&motor.source.name, variant, disturbance);
-        VARIANTS.into_iter().flat_map(move |variant| {
-            DISTURBANCES.map(|disturbance| (drive(variant, disturbance), disturbance))
-        })
+        let drive =
+            |variant| [false, true].map(|states| drive(&motor.source.name, variant, states));
+        VARIANTS.map(drive)
     });
-    let drives: Vec<_> = drives.collect();
-    let misses = drives.par_iter().flat_map_iter(|(drive, disturbance)| {
+    let drives: Vec<[Prepared; 2]> = drives.collect();
+    let pairs: Vec<_> = drives
+        .iter()
+        .flat_map(|[as_filed, stating]| {
+            DISTURBANCES.map(|disturbance| match disturbance {
+                StatedDeadTime => (stating, disturbance),
+                _ => (as_filed, disturbance),
+            })
+        })
+        .collect();
+    let misses = pairs.par_iter().flat_map_iter(|&(drive, disturbance)| {
         SPEEDS.into_iter().flat_map(move |speed| {
-            let at = move |signs| miss(drive, *disturbance, speed, signs);
+            let at = move |signs| miss(drive, disturbance, speed, signs);
             QUADRANTS.into_iter().filter_map(at)
         })
     });

@@ -10,9 +10,9 @@ const BESIDE: &str = "\"../hexagen/";
 /// Folder of the crate.
 const CRATE: &str = "target/readme";
 
-/// Writes the crate: the README's dependencies, of which only the path of the repository is replaced, its macro call, and
-/// its lines of firmware and `verify!` as tests. The step builds and tests it, offline, with the versions of the
-/// workspace's lock file.
+/// Writes a crate that has the README's dependencies and macro call; the README's lines of firmware, and `verify!`, are
+/// its tests. Of the dependencies only the path to the repository is replaced. The step builds and tests the crate,
+/// offline, with the versions of the workspace's lock file.
 ///
 /// # Errors
 /// A part that the README lacks, or an error of reading or writing.
@@ -68,7 +68,7 @@ fn manifest(dependencies: &str) -> Result<String, String> {
     ))
 }
 
-/// The macro call as an item, the lines behind it as a test.
+/// The crate's text: the README's macro call, and a test that runs the lines which follow it.
 fn library(example: &str) -> Result<String, String> {
     let (call, lines) = example
         .split_once("\nuse ")

@@ -481,41 +481,9 @@ mod tests {
 
     #[test]
     fn a_wrong_answer_is_asked_for_again_and_shunts_for_their_times() {
-        let answers = [
-            "",
-            "8",
-            "0.56 ohm",
-            "0.56 ohm terminal",
-            "0.92 H terminal",
-            "0.92 mH terminal",
-            "square",
-            "speed_constant=285 rpm/V block_mean",
-            "trapezoidal",
-            "torque_constant=3.6 Ncm/A block_mean",
-            "6.9 A",
-            "",
-            "\"3500 rpm\"",
-            "6200 rpm",
-            "24 V",
-            "",
-            "24 V",
-            "72 MHz",
-            "shunt=5 mohm",
-            "20",
-            "3.3 V",
-            "low_side",
-            "1 us",
-            "200 ns",
-            "0 us",
-            "",
-            "10 A",
-            "2 A",
-            "",
-            "",
-            "",
-        ];
+        let answers = include_str!("../../tests/answers.txt").lines();
         let mut draft = Draft::of(Vec::new(), Path::new("db42.toml")).expect("nothing is wrong");
-        let mut given = answers.iter().map(|answer| Ok((*answer).to_owned()));
+        let mut given = answers.map(|answer| Ok(answer.to_owned()));
         let file = Path::new("db42.toml");
         draft.ask(&mut given, file).expect("answers are read");
         assert_eq!(given.count(), 0, "an answer was not asked for");
@@ -600,7 +568,7 @@ mod tests {
         let file = Path::new("own.toml");
         let mut draft = Draft::of(Vec::new(), file).expect("nothing is wrong");
         let answers = ["", "8", "0.28 ohm per_phase", "0.46 mH per_phase", "delta"];
-        let mut given = answers.iter().map(|answer| Ok((*answer).to_owned()));
+        let mut given = answers.map(|answer| Ok(answer.to_owned()));
         draft.ask(&mut given, file).expect("answers are read");
         assert!(
             draft.text().contains("winding = \"delta\""),

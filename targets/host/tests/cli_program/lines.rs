@@ -230,41 +230,9 @@ fn the_verdict_is_coloured_on_a_terminal() {
     }
 }
 
-/// Answers of somebody with a data sheet, some of them wrong.
+/// Answers of somebody with a data sheet, some of them wrong; a line each.
 #[cfg(target_os = "linux")]
-const ANSWERS: [&str; 31] = [
-    "",
-    "8",
-    "0.56 ohm",
-    "0.56 ohm terminal",
-    "0.92 H terminal",
-    "0.92 mH terminal",
-    "square",
-    "speed_constant=285 rpm/V block_mean",
-    "trapezoidal",
-    "torque_constant=3.6 Ncm/A block_mean",
-    "6.9 A",
-    "",
-    "3500 rpm",
-    "6200 rpm",
-    "24 V",
-    "",
-    "24 V",
-    "72 MHz",
-    "shunt=5 mohm",
-    "20",
-    "3.3 V",
-    "low_side",
-    "1 us",
-    "200 ns",
-    "0 us",
-    "",
-    "10 A",
-    "2 A",
-    "",
-    "",
-    "",
-];
+const ANSWERS: &str = include_str!("../answers.txt");
 
 /// The questions of `new` on a terminal of its own, which `script` makes.
 #[cfg(target_os = "linux")]
@@ -282,8 +250,7 @@ fn the_questions_of_a_new_file_lead_to_a_drive_that_works() {
         .spawn()
         .expect("`script` of util-linux makes the terminal");
     let mut answers = asked.stdin.take().expect("a pipe");
-    let lines = ANSWERS.join("\n") + "\n";
-    answers.write_all(lines.as_bytes()).expect("is read");
+    answers.write_all(ANSWERS.as_bytes()).expect("is read");
     let shown = asked.wait_with_output().expect("the program ends");
     let shown = String::from_utf8_lossy(&shown.stdout).into_owned();
     // Of a resistance without basis, an inductance a thousandfold off and an unknown shape.
