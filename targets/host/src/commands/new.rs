@@ -568,7 +568,7 @@ mod tests {
         let file = Path::new("own.toml");
         let mut draft = Draft::of(Vec::new(), file).expect("nothing is wrong");
         let answers = ["", "8", "0.28 ohm per_phase", "0.46 mH per_phase", "delta"];
-        let mut given = answers.map(|answer| Ok(answer.to_owned()));
+        let mut given = answers.iter().map(|answer| Ok((*answer).to_owned()));
         draft.ask(&mut given, file).expect("answers are read");
         assert!(
             draft.text().contains("winding = \"delta\""),
