@@ -9,7 +9,7 @@ use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
 use crate::ir::{Exact, Expr, Lut, Named, Periodic, Phases, Real, named};
-use crate::spec::{proportional_current, zero_sum_integral};
+use crate::spec::{EmfShape, proportional_current, zero_sum_integral};
 
 /// A third of a turn: phase b lags phase a by it.
 const THIRD_TURN: i64 = 1_431_655_765;
@@ -243,6 +243,20 @@ pub fn model_target_emf<'b>(
     e_model
 }
 
+/// Part by which an EMF is longer than along a [`ProportionalShape`].
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch<'b> {
+    value: Expr<'b>,
+    frac_bits: u32,
+}
+
+impl<'b> Stretch<'b> {
+    /// A component along the EMF, of one along the shape.
+    pub fn of(self, along: Expr<'b>) -> Expr<'b> {
+        along + along.mul_floor(self.value, self.frac_bits)
+    }
+}
+
 /// Current per ampere of set-point that is parallel to the EMF.
 #[derive(Clone, Copy, Debug)]
 pub struct ProportionalShape<'b> {
@@ -269,6 +283,28 @@ impl<'b> ProportionalShape<'b> {
         let theta_b = lagging(l, "theta_ref_b", theta);
         let unit = Phases([table.at("shape_a", theta), table.at("shape_b", theta_b)]);
         Self { table, theta, unit }
+    }
+
+    /// By what part an EMF is longer than along this shape, at its angle; none of a sine, whose length is the same
+    /// everywhere. Added to the open stage.
+    pub fn stretch(&self, l: &Lowering<'b>) -> Option<Stretch<'b>> {
+        let shape = l.spec.motor.emf_shape;
+        if shape == EmfShape::Sinusoidal {
+            return None;
+        }
+        // The mean is a scan over the turn, made once.
+        let mean = shape.mean_inverse_square();
+        let of = |theta| shape.squared_length(theta) * mean - 1.0;
+        let fit = Parabolas::with_segments(&of, self.table.segments);
+        // The sum of a value and a slope must fit a word.
+        let frac_bits = (30.0 - fit.magnitude().log2()).floor().clamp(0.0, 32.0) as u32;
+        let doc = "Part by which the EMF is longer than along the current parallel to it, over the electrical angle";
+        let error = format!("{:.1e}", fit.error);
+        let table = PeriodicTable::new(l, "stretch", &fit, frac_bits, [doc, &error]);
+        Some(Stretch {
+            value: table.at("stretch", self.theta),
+            frac_bits,
+        })
     }
 
     /// The current of phases a and b at another angle; `when` stands in the names of its values. Added to the open

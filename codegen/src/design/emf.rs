@@ -28,7 +28,8 @@ impl Parabolas {
         best
     }
 
-    fn with_segments(function: &impl Fn(f64) -> f64, segments: u32) -> Self {
+    /// Fits with so many segments.
+    pub fn with_segments(function: &impl Fn(f64) -> f64, segments: u32) -> Self {
         const PROBES: u32 = 16;
         let width = TAU / f64::from(segments);
         let mut error = 0.0_f64;

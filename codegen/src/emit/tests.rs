@@ -79,7 +79,7 @@ fn formats_hold_what_they_describe() {
         }
         assert!(checked > 5, "{variant}: {checked} words were checked");
         for format in &interface.formats {
-            let tabled = ["flux", "shape"].contains(&format.name.as_str());
+            let tabled = ["flux", "shape", "stretch"].contains(&format.name.as_str());
             assert_eq!(format.segments.is_some(), tabled, "{variant}: {format:?}");
             assert!(
                 (-32..=62).contains(&format.frac_bits),

@@ -137,6 +137,21 @@ impl EmfShape {
         a - (a + b + c) / 3.0
     }
 
+    /// Mean of 1/|f|^2 over the 600 angles 0, 0.1, ..., 59.9 degrees, f = [`Self::alpha_beta`].
+    pub fn mean_inverse_square(self) -> f64 {
+        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
+        let inverses = angles.map(|theta| self.alpha_beta(theta).norm_squared().recip());
+        inverses.sum::<f64>() / 600.0
+    }
+
+    /// Part by which the EMF is longer than along the current parallel to it, over the angle in radians: |f|^2 times
+    /// the mean of 1/|f|^2, less 1. `None` of a sine, where it is 0 everywhere.
+    pub fn stretch(self) -> Option<impl Fn(f64) -> f64> {
+        let mean = self.mean_inverse_square();
+        (self != Self::Sinusoidal)
+            .then_some(move |theta| self.alpha_beta(theta).norm_squared() * mean - 1.0)
+    }
+
     /// Amplitude-invariant Clarke transform of the three unit EMFs at `theta` radians.
     pub fn alpha_beta(self, theta: f64) -> Vector2<f64> {
         let (a, b) = (self.zero_sum(theta), self.zero_sum(theta - THIRD));

@@ -7,9 +7,10 @@
 use super::words::{EmfUse, Words};
 use super::{CurrentLoop, read};
 use crate::blocks::{
-    Lowering, Rotor, SHAPE_BITS, lifted, model_emf, model_target_emf, product_bound,
+    Lowering, ProportionalShape, Rotor, SHAPE_BITS, lifted, model_emf, model_target_emf,
+    product_bound,
 };
-use crate::ir::{Coefficient, Expr, Memory, Phases, mul_add_floor, named, pick};
+use crate::ir::{Coefficient, Expr, Memory, Named, Phases, mul_add_floor, named, pick};
 use crate::spec::EmfSource;
 
 /// EMF of phases a and b over the target period and over the present one.
@@ -23,6 +24,9 @@ pub(super) struct Emf<'b> {
     /// Counts of the residual watch and of periods that tell the torque constant, and their new values.
     pub counts: [Option<(Memory<'b>, Expr<'b>)>; 2],
 }
+
+/// The rotor, and the shape at its angle.
+pub(super) type Seen<'r, 'b> = (&'r Rotor<'b>, Option<ProportionalShape<'b>>);
 
 /// Shift of the sums of products that correct the error: 1/16 of a sum is 3/32 of a component.
 const OBSERVER_SHIFT: u32 = SHAPE_BITS + 4;
@@ -46,7 +50,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         words: &Words<'b>,
         currents: Phases<'b, 3>,
         sector: Expr<'b>,
-        (rotor, set_point, v_bus): (Option<(&Rotor<'b>, Option<Phases<'b>>)>, Expr<'b>, Expr<'b>),
+        (rotor, set_point, v_bus): (Option<Seen<'_, 'b>>, Expr<'b>, Expr<'b>),
         third: Coefficient,
         outgoing: Option<Expr<'b>>,
     ) -> Option<Emf<'b>> {
@@ -137,14 +141,14 @@ impl<'b> CurrentLoop<'_, 'b> {
         words: &Words<'b>,
         i: Phases<'b>,
         rotor: &Rotor<'b>,
-        shape: Phases<'b>,
+        shape: ProportionalShape<'b>,
         [set_point, v_bus]: [Expr<'b>; 2],
     ) -> Option<Emf<'b>> {
         let l = self.l;
         let memories = words.emf_error?;
         let e_model = model_target_emf(l, rotor, self.options.delay, self.design.e_limit);
         let residual = self.emf_residual(words, i)?;
-        let lines = shape_lines(shape);
+        let lines = shape_lines(shape.unit);
         l.b.stage(
             "correct_emf_error",
             &[
@@ -156,7 +160,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         named! {
             let learnt = residual.map(|volts| rotor.tracking.choose(volts, 0));
         }
-        let ([r_a, r_b], [p_a, p_b], [line_a, line_b]) = (learnt.0, shape.0, lines.0);
+        let ([r_a, r_b], [p_a, p_b], [line_a, line_b]) = (learnt.0, shape.unit.0, lines.0);
         let old = memories.map(Memory::read);
         let along = mul_add_floor([r_a, line_a], [r_b, line_b], OBSERVER_SHIFT);
         let across = mul_add_floor([r_b, p_a], [-r_a, p_b], OBSERVER_SHIFT);
@@ -175,7 +179,11 @@ impl<'b> CurrentLoop<'_, 'b> {
         ];
         let doc = "EMF over the target period: the modelled one plus its error, which turns with the rotor.";
         l.b.stage("observe_emf", &[doc]);
-        let ([along, across], shift) = lifted([("q_lifted", q), ("d_lifted", d)]);
+        let q_along = match shape.stretch(l) {
+            Some(stretch) => stretch.of(q).named("q_stretched"),
+            None => q,
+        };
+        let ([along, across], shift) = lifted([("q_lifted", q_along), ("d_lifted", d)]);
         let error = Phases([
             mul_add_floor([along, p_a], [-across, line_b], shift),
             mul_add_floor([along, p_b], [across, line_a], shift),

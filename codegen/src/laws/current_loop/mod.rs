@@ -219,11 +219,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             &words,
             currents,
             sector_seen,
-            (
-                rotor.map(|rotor| (rotor, shape.map(|shape| shape.unit))),
-                j,
-                bus.volts,
-            ),
+            (rotor.map(|rotor| (rotor, shape)), j, bus.volts),
             third,
             outgoing,
         );

@@ -518,7 +518,7 @@ impl<W: Word> BitTrue<W> {
                         let v_bus = (!self.bus_is_stale()).then_some(self.v_bus);
                         light = learning.count(light, told, v_bus, angle.speed.step);
                     }
-                    let e = emf::corrected(k, mean(start, end), emf_error, shape);
+                    let e = emf::corrected(k, mean(start, end), emf_error, (theta_ref, shape));
                     (e, if delayed { self.state.e_next } else { e })
                 }
             }

@@ -76,6 +76,8 @@ pub struct Ideal {
     end: CommutationEnd,
     phase: DiscretePhase,
     shape: EmfShape,
+    /// Of the shape's length.
+    mean_inverse_square: f64,
     hall_sectors: [usize; 8],
     /// Of each sector, where it begins beyond its place, and its width, radian.
     sectors: [[f64; 2]; 6],
@@ -159,6 +161,7 @@ impl Ideal {
             end: spec.commutation_end().unwrap_or_default(),
             phase,
             shape: EmfShape::new(motor)?,
+            mean_inverse_square: EmfShape::new(motor)?.mean_inverse_square(),
             hall_sectors: sector::hall_sectors(motor),
             sectors: motor.sectors_beyond_places(),
             bus_watch: BusWatch::new(inverter),
@@ -513,7 +516,7 @@ impl Ideal {
                         let v_bus = is_fresh.then_some(self.v_bus);
                         light = learning.count(light, told, v_bus, step_angle);
                     }
-                    let e = self.corrected_emf(&e, emf_error, &shape);
+                    let e = self.corrected_emf(&e, emf_error, (theta + target, &shape));
                     let [next_a, next_b] = self.state.e_next;
                     (e, if delayed { from_ab(next_a, next_b) } else { e })
                 }

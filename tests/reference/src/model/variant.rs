@@ -242,9 +242,7 @@ pub const SETTLED: f64 = 64.0;
 /// Component along the shape that the observer makes of the EMF, V s per electrical radian.
 pub fn flux_along(spec: &Spec, shape: &EmfShape) -> f64 {
     let motor = &spec.motor;
-    let inverses = (0..600).map(|k| shape.alpha_beta(f64::from(k).to_radians() / 10.0));
-    let inverses = inverses.map(|emf| emf.norm_squared().recip());
-    let mean = inverses.sum::<f64>() / 600.0;
+    let mean = shape.mean_inverse_square();
     1.5 * motor.emf_constant.powi(2) / (motor.torque_constant * mean) / f64::from(motor.pole_pairs)
 }
 

@@ -430,6 +430,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("ratio", 24),
         ("scale", 30),
         ("shape", shift(peak)),
+        ("stretch", 31),
         ("flux", shift(linkage)),
         ("emf_product", 2 * f_v - (e_max.log2().ceil() as i32).max(0)),
     ];
@@ -440,7 +441,7 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
             storage_bits: 32,
             frac_bits: i8::try_from(frac_bits).expect("fraction bits"),
             rounding: Rounding::RoundHalfUp,
-            segments: if matches!(name, "shape" | "flux") {
+            segments: if matches!(name, "shape" | "stretch" | "flux") {
                 48
             } else {
                 0

@@ -86,6 +86,8 @@ pub struct Constants<W> {
     pub flux_to_voltage: f64,
     pub shape: Table<W>,
     pub shape_product: Shift,
+    /// Of an observer whose EMF is not a sine: how much longer the EMF is than along the shape.
+    pub stretch: Option<(Table<W>, Shift)>,
 }
 
 /// Scaling of physical values to words, and the plant of the coefficients.
@@ -278,6 +280,15 @@ impl<W: Word> Constants<W> {
         } else {
             (Table::default(), Shift::default())
         };
+        let stretch = (variant.emf == Some(EmfSource::Observer))
+            .then(|| emf_shape.stretch())
+            .flatten()
+            .map(|stretch| {
+                let bits = formats.frac_bits("stretch")?;
+                let table = Table::new(formats.segments("stretch")?, bits, stretch);
+                Ok::<_, Error>((table, Shift::new(bits)))
+            })
+            .transpose()?;
         let v_largest = bus.map_or(timer_period * two_v, |bus| bus.v_max);
         let motion = EmfMotion::new(spec)?;
         let line_max = floor_constant(motion.line_limit / w * two_v).min(v_largest);
@@ -420,6 +431,7 @@ impl<W: Word> Constants<W> {
             flux_to_voltage,
             shape,
             shape_product,
+            stretch,
         })
     }
 }

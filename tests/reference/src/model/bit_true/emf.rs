@@ -2,7 +2,7 @@
 
 use super::constants::Constants;
 use super::state::State;
-use crate::exact::{Word, both, halve, within, word};
+use crate::exact::{Word, both, halve, within, word, wrap32};
 use crate::model::sector::OUT_PHASE;
 
 /// `volts` of phases a, b less the drop across inductance and resistance, of a period that began with the currents
@@ -58,10 +58,19 @@ pub fn corrected_error<W: Word>(
     ]
 }
 
-/// The modelled EMF of phases a, b plus its error.
+/// The modelled EMF of phases a, b plus its error, by the shape at the angle `theta`.
 #[inline]
-pub fn corrected<W: Word>(k: &Constants<W>, e: [W; 2], emf_error: [W; 2], shape: [W; 2]) -> [W; 2] {
-    let ([a, b], [line_a, line_b], [along, across]) = (shape, lines(shape), emf_error);
+pub fn corrected<W: Word>(
+    k: &Constants<W>,
+    e: [W; 2],
+    [q, across]: [W; 2],
+    (theta, shape): (W, [W; 2]),
+) -> [W; 2] {
+    let ([a, b], [line_a, line_b]) = (shape, lines(shape));
+    let along = match &k.stretch {
+        Some((table, product)) => q + product.floor_product(table.at(wrap32(theta)), q),
+        None => q,
+    };
     let turned = [
         k.shape_product
             .floor_sum_of_products([along, a], [-across, line_b]),

@@ -50,7 +50,7 @@ impl<W: Word> Table<W> {
 
     /// The function at an angle word from 0 to 2^32 - 1.
     #[inline]
-    fn at(&self, theta: W) -> W {
+    pub fn at(&self, theta: W) -> W {
         let (index, position) = split(theta * self.scale);
         let t = floor(position * pow2(32)) - pow2(31);
         let [c0, c1, c2] = self.segments[to_index(index)];

@@ -124,16 +124,18 @@ impl Ideal {
         (self.state.residual_count + step).clamp(0.0, most)
     }
 
-    /// The modelled EMF plus its error.
+    /// The modelled EMF plus its error, by the shape at the angle `theta`.
     pub(super) fn corrected_emf(
         &self,
         e: &Vector2<f64>,
-        emf_error: [f64; 2],
-        shape: &Vector2<f64>,
+        [q, d]: [f64; 2],
+        (theta, shape): (f64, &Vector2<f64>),
     ) -> Vector2<f64> {
+        // As along f itself, which is as long as the proportional current is short.
+        let along = q * self.shape.alpha_beta(theta).norm_squared() * self.mean_inverse_square;
         let across = Vector2::new(-shape.y, shape.x) * 3_f64.sqrt();
         let most = 2.0 * self.emf_error_limit;
-        let [e_a, e_b] = to_ab(&(e + shape * emf_error[0] + across * emf_error[1]));
+        let [e_a, e_b] = to_ab(&(e + shape * along + across * d));
         from_ab(e_a.clamp(-most, most), e_b.clamp(-most, most))
     }
 }
