@@ -9,7 +9,7 @@ use crate::design::vectors::SECTOR_CURRENT;
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Rounding};
 use crate::ir::{Exact, Expr, Lut, Named, Periodic, Phases, Real, named};
-use crate::spec::{EmfShape, proportional_current, zero_sum_integral};
+use crate::spec::{Spec, proportional_current, zero_sum_integral};
 
 /// A third of a turn: phase b lags phase a by it.
 const THIRD_TURN: i64 = 1_431_655_765;
@@ -243,6 +243,19 @@ pub fn model_target_emf<'b>(
     e_model
 }
 
+/// How far the squares of the EMF's lengths differ, times the current that the EMF of the greatest speed moves in a
+/// control period over the largest set-point, from which on the error of an EMF is corrected along the EMF itself. Below
+/// it an EMF constant 20 % off makes at most 4 % of ripple at rated speed (660 W motor: 0.11 and 3.0 %).
+const UNEVEN: f64 = 0.15;
+
+/// Whether the EMF's error is corrected along the EMF's own shape, and not along the current parallel to it.
+fn is_stretched(spec: &Spec) -> bool {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let emf = motor.emf_constant * inverter.maximum_speed;
+    let coarseness = emf * inverter.t_s / (motor.inductance * inverter.max_current);
+    motor.emf_shape.unevenness() * coarseness > UNEVEN
+}
+
 /// Part by which an EMF is longer than along a [`ProportionalShape`].
 #[derive(Clone, Copy, Debug)]
 pub struct Stretch<'b> {
@@ -285,13 +298,13 @@ impl<'b> ProportionalShape<'b> {
         Self { table, theta, unit }
     }
 
-    /// By what part an EMF is longer than along this shape, at its angle; none of a sine, whose length is the same
-    /// everywhere. Added to the open stage.
+    /// By what part an EMF is longer than along this shape, at its angle; none where that makes little ripple. Added to
+    /// the open stage.
     pub fn stretch(&self, l: &Lowering<'b>) -> Option<Stretch<'b>> {
-        let shape = l.spec.motor.emf_shape;
-        if shape == EmfShape::Sinusoidal {
+        if !is_stretched(l.spec) {
             return None;
         }
+        let shape = l.spec.motor.emf_shape;
         // The mean is a scan over the turn, made once.
         let mean = shape.mean_inverse_square();
         let of = |theta| shape.squared_length(theta) * mean - 1.0;

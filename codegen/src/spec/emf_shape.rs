@@ -100,6 +100,17 @@ impl EmfShape {
         slopes.fold(0.0, f64::max)
     }
 
+    /// Greatest over least square of the length of the unit EMF in the plane, less 1, over 600 angles of a tenth of a degree:
+    /// 0 of a sine, 1/3 of a trapezoid of 120 degrees.
+    pub fn unevenness(self) -> f64 {
+        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
+        let squares = angles.map(|theta_e| self.squared_length(theta_e));
+        let (least, most) = squares.fold((f64::INFINITY, 0.0_f64), |(least, most), square| {
+            (least.min(square), most.max(square))
+        });
+        most / least - 1.0
+    }
+
     /// Mean of 1/s^2, s the length of the unit EMF in the plane, over 600 angles of a tenth of a degree.
     pub fn mean_inverse_square(self) -> f64 {
         const ANGLES: u32 = 600;

@@ -145,11 +145,10 @@ impl EmfShape {
     }
 
     /// Part by which the EMF is longer than along the current parallel to it, over the angle in radians: |f|^2 times
-    /// the mean of 1/|f|^2, less 1. `None` of a sine, where it is 0 everywhere.
-    pub fn stretch(self) -> Option<impl Fn(f64) -> f64> {
+    /// the mean of 1/|f|^2, less 1.
+    pub fn stretch(self) -> impl Fn(f64) -> f64 {
         let mean = self.mean_inverse_square();
-        (self != Self::Sinusoidal)
-            .then_some(move |theta| self.alpha_beta(theta).norm_squared() * mean - 1.0)
+        move |theta| self.alpha_beta(theta).norm_squared() * mean - 1.0
     }
 
     /// Amplitude-invariant Clarke transform of the three unit EMFs at `theta` radians.

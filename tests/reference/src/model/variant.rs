@@ -246,6 +246,18 @@ pub fn flux_along(spec: &Spec, shape: &EmfShape) -> f64 {
     1.5 * motor.emf_constant.powi(2) / (motor.torque_constant * mean) / f64::from(motor.pole_pairs)
 }
 
+/// Whether the error of the observed EMF is corrected along the EMF itself (section 8).
+pub fn stretches(spec: &Spec, shape: &EmfShape) -> bool {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let mut squares: Vec<f64> = (0..600)
+        .map(|k| f64::from(k).to_radians() / 10.0)
+        .map(|theta| shape.alpha_beta(theta).norm_squared())
+        .collect();
+    squares.sort_by(f64::total_cmp);
+    let moved = motor.emf_constant * inverter.omega_max * inverter.t_s / motor.inductance;
+    (squares[599] / squares[0] - 1.0) * moved / inverter.max_current > 0.15
+}
+
 /// Residual allowed by the residual watch: volt always, volt per ampere of the set-point, volt per
 /// electrical radian per second, and in its place volt while the angle is unknown.
 pub fn allowed_residual(spec: &Spec) -> [f64; 4] {

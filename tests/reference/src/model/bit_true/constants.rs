@@ -8,7 +8,7 @@ use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
 use crate::model::hall::HallClock;
-use crate::model::variant::{Variant, emf_error_limit, emf_limit, reference_gain};
+use crate::model::variant::{Variant, emf_error_limit, emf_limit, reference_gain, stretches};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Saturation, Spec, Switch,
 };
@@ -86,7 +86,7 @@ pub struct Constants<W> {
     pub flux_to_voltage: f64,
     pub shape: Table<W>,
     pub shape_product: Shift,
-    /// Of an observer whose EMF is not a sine: how much longer the EMF is than along the shape.
+    /// How much longer the EMF is than along the shape, where that counts.
     pub stretch: Option<(Table<W>, Shift)>,
 }
 
@@ -280,15 +280,15 @@ impl<W: Word> Constants<W> {
         } else {
             (Table::default(), Shift::default())
         };
-        let stretch = (variant.emf == Some(EmfSource::Observer))
-            .then(|| emf_shape.stretch())
-            .flatten()
-            .map(|stretch| {
-                let bits = formats.frac_bits("stretch")?;
-                let table = Table::new(formats.segments("stretch")?, bits, stretch);
-                Ok::<_, Error>((table, Shift::new(bits)))
-            })
-            .transpose()?;
+        let observes = variant.emf == Some(EmfSource::Observer);
+        let stretch = if observes && stretches(spec, &emf_shape) {
+            let bits = formats.frac_bits("stretch")?;
+            let segments = formats.segments("stretch")?;
+            let table = Table::new(segments, bits, emf_shape.stretch());
+            Some((table, Shift::new(bits)))
+        } else {
+            None
+        };
         let v_largest = bus.map_or(timer_period * two_v, |bus| bus.v_max);
         let motion = EmfMotion::new(spec)?;
         let line_max = floor_constant(motion.line_limit / w * two_v).min(v_largest);

@@ -131,8 +131,11 @@ impl Ideal {
         [q, d]: [f64; 2],
         (theta, shape): (f64, &Vector2<f64>),
     ) -> Vector2<f64> {
-        // As along f itself, which is as long as the proportional current is short.
-        let along = q * self.shape.alpha_beta(theta).norm_squared() * self.mean_inverse_square;
+        let along = if self.stretches {
+            q + q * self.shape.stretch()(theta)
+        } else {
+            q
+        };
         let across = Vector2::new(-shape.y, shape.x) * 3_f64.sqrt();
         let most = 2.0 * self.emf_error_limit;
         let [e_a, e_b] = to_ab(&(e + shape * along + across * d));
