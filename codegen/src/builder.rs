@@ -7,7 +7,7 @@ use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::emit::c99::{RUNTIME, Sources, emit_c99};
 use crate::emit::module_name;
 use crate::emit::rust::{Surface, emit_rust, format_rust};
-use crate::pipeline::{Generated, generate, warnings};
+use crate::pipeline::{Generated, generate, warning_in_c, warnings};
 use crate::spec::{Board, SpecAst, apply_variant, check, motor_text, parse_toml};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -467,7 +467,7 @@ impl Builder {
         let mut source = Source::default();
         let mut errors = vec![];
         for wanted in drives {
-            match generate_wanted(&ast, wanted) {
+            match generate_wanted(&ast, wanted, self.language) {
                 Ok((generated, warnings)) => {
                     source.add(&generated, &motor.path, self.language)?;
                     let warnings = warnings
@@ -489,6 +489,7 @@ impl Builder {
 fn generate_wanted(
     ast: &SpecAst,
     wanted: &Wanted,
+    language: Language,
 ) -> Result<(Generated, Vec<Diagnostic>), Diagnostics> {
     let mut ast = ast.clone();
     if let Some(variant) = &wanted.variant {
@@ -500,7 +501,11 @@ fn generate_wanted(
     }
     let (spec, origins) = check(&ast)?;
     let generated = generate(&spec, &origins)?;
-    let warnings = warnings(&spec, &origins, &generated.interface.times);
+    let times = &generated.interface.times;
+    let mut warnings = warnings(&spec, &origins, times);
+    if language == Language::C99 {
+        warnings.extend(warning_in_c(&origins, times));
+    }
     Ok((generated, warnings))
 }
 

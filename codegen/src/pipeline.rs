@@ -124,18 +124,35 @@ pub fn warnings(spec: &Spec, origins: &Origins, times: &[StepTime]) -> Vec<Diagn
 
 /// Warns of a step that may take longer than the control period on the core that is named.
 fn warn_of_time(time: &StepTime, origins: &Origins) -> Option<Diagnostic> {
-    const TARGET: &str = "controller.target";
-    time.is_too_long().then(|| {
-        catalogue::step_exceeds_period(
-            origins.at(TARGET),
-            &origins.given(TARGET, ""),
-            (time.chip.name, time.most_cycles()),
-            (time.clock, origins.is_given("controller.core_clock")),
-            time.period,
-            time.errors
-                .map(|errors| (time.told().any_cycles, errors.any_cycles)),
-        )
-    })
+    let told = || catalogue::step_exceeds_period(origins.at(TARGET), &long_step(time, origins));
+    time.is_too_long().then(told)
+}
+
+/// Warns of a step that fits in Rust and may take longer than the control period in C.
+pub fn warning_in_c(origins: &Origins, times: &[StepTime]) -> Option<Diagnostic> {
+    let time = times.iter().find(|time| time.is_too_long_in_c_only())?;
+    let step = long_step(time, origins);
+    Some(catalogue::step_exceeds_period_in_c(
+        origins.at(TARGET),
+        &step,
+    ))
+}
+
+/// The option that names the core.
+const TARGET: &str = "controller.target";
+
+fn long_step<'a>(time: &'a StepTime, origins: &'a Origins) -> catalogue::LongStep<'a> {
+    catalogue::LongStep {
+        given: origins.written(TARGET).unwrap_or_default(),
+        chip: time.chip.name,
+        most: [time.most_cycles(), time.most_cycles_in_c()],
+        clock: time.clock,
+        is_stated: origins.is_given("controller.core_clock"),
+        period: time.period,
+        estimate: time
+            .errors
+            .map(|errors| (time.told().any_cycles, errors.any_cycles)),
+    }
 }
 
 /// Warns of a rating beyond the drive's envelope.

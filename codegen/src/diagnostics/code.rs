@@ -189,6 +189,10 @@ codes! {
     BasisByAgreement = 619,
     /// Hall edges that are seen at samples only make the torque ripple.
     SampledHalls = 620,
+    /// A largest set-point of many times the rated current.
+    CurrentFarAboveRated = 621,
+    /// A gain of the current sensors far from that of the board.
+    GainUnlikeBoard = 622,
     /// An internal error of the generator.
     Internal = 901,
 }

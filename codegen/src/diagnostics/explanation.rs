@@ -66,7 +66,7 @@ impl Code {
                 "The section has no field of this name, so its value would have no effect.",
                 "resistence = \"135 mohm per_phase\"",
                 "resistance = \"135 mohm per_phase\"",
-                "Correct the name; `hexagen::specification` in the documentation lists all fields.",
+                "Correct the name; `hexagen new FILE` writes a file that names the fields, and `hexagen::specification` in the documentation explains each.",
             ),
             Self::DuplicateField => say(
                 "A field or section is written twice, and only one value can hold.",
@@ -543,6 +543,18 @@ impl Code {
                 "bus_voltage = \"48 V\"\ninertia = \"24 kg m2\"",
                 "bus_voltage = \"48 V\"\ninertia = \"24 kg cm2\"",
                 "Look up the unit in the data sheet, and state the inertia of the rotor and of what it moves. If it is right, let the warning be.",
+            ),
+            Self::CurrentFarAboveRated => say(
+                "The copper loss rises with the square of the current: at five times the rated current it is 25 times that of the rating. Nothing in the drive counts how long the windings bear it, so such a value is rather a wrong power of ten.",
+                "hall_timer_clock = \"1 MHz\"\nrated_current = \"5 A peak\"\nmax_current = \"25 A\"",
+                "hall_timer_clock = \"1 MHz\"\nrated_current = \"5 A peak\"\nmax_current = \"10 A\"",
+                "Lower max_current to what the windings bear, or correct rated_current. If short peaks are meant, let the application limit their time.",
+            ),
+            Self::GainUnlikeBoard => say(
+                "A field of the motor's file replaces the gain of the board's current sensors, and the two differ by more than a factor of two. With the wrong one every current is off by that factor: the true torque is a multiple or a part of what is asked, and the trip level moves with it.",
+                "board = \"vesc-4\"\nadc_range = \"40 A\"",
+                "board = \"vesc-4\"",
+                "Measure the gain with a meter in a phase, or remove the field. A board with other sensors than the library's is described in a file of its own.",
             ),
             Self::SampledHalls => say(
                 "Without a timer a Hall edge is seen at the next sample, up to a control period late. The rotor's angle jumps by what it turns in that time, and reference and EMF jump with it: the more so the less inductance the motor has. A timer that captures the edges tells when they came.",

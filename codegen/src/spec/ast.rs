@@ -113,7 +113,10 @@ pub struct Board {
 }
 
 /// Options of a controller that a board may state: they are those of its core.
-pub const OF_CORE: [&str; 2] = ["target", "core_clock"];
+pub const OF_CORE: [&str; 2] = [TARGET, "core_clock"];
+
+/// The option that names the core.
+pub const TARGET: &str = "target";
 
 /// What stands in a board's file.
 #[derive(Clone, Debug, Default)]

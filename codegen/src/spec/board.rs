@@ -3,7 +3,7 @@
 //! A board is a layer of its own. Its fields stand directly under those of the place that names it:
 //! under a motor file's own where that names the board, over them where the call does.
 
-use super::ast::{Board, Field, Name, OF_CORE, Section, SpecAst, Value};
+use super::ast::{Board, Field, Name, OF_CORE, Section, SpecAst, TARGET, Value};
 use super::reader::Reader;
 use super::schema;
 use super::sensing::{IN_PHASE, LOW_SIDE};
@@ -54,14 +54,14 @@ impl SpecAst {
         self.malformed.extend(errors.collect::<Vec<_>>());
     }
 
-    /// The controller, with its board's core where it names none itself.
+    /// The controller, with its board's core where it names none itself. A clock of its own replaces the board's.
     pub(super) fn whole_controller(&self) -> Section {
         let mut whole = self.controller.clone();
         let file = self.board.as_ref().and_then(|board| board.file.as_ref());
-        if OF_CORE.iter().all(|option| whole.field(option).is_none()) {
-            whole
-                .fields
-                .extend(file.into_iter().flat_map(|file| file.core.fields.clone()));
+        if whole.field(TARGET).is_none() {
+            let of_board = file.into_iter().flat_map(|file| &file.core.fields);
+            let lacking = of_board.filter(|field| self.controller.field(&field.name).is_none());
+            whole.fields.extend(lacking.cloned());
         }
         whole
     }

@@ -43,7 +43,7 @@ mod weakening;
 mod words;
 
 pub use angle::{AngleDirection, AngleSensor, RotorSource};
-pub use ast::{Board, BoardFile, Field, OF_CORE, SpecAst};
+pub use ast::{Board, BoardFile, Field, OF_CORE, SpecAst, TARGET};
 pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
 pub use controller::{

@@ -177,6 +177,12 @@ impl StepTime {
         self.is_named && self.most_cycles() > self.cycles_of_period()
     }
 
+    /// Whether a step may take longer than the control period in C only, on the core that is named.
+    pub fn is_too_long_in_c_only(&self) -> bool {
+        let fits = !self.is_too_long();
+        self.is_named && fits && self.most_cycles_in_c() > self.cycles_of_period()
+    }
+
     /// Whether the figures are bounds: counted, and at no higher clock than the chip's, beyond which
     /// a memory takes more wait states.
     pub fn is_bound(&self) -> bool {
@@ -296,6 +302,12 @@ pub fn work(program: &Program) -> Times<Work> {
     Times::of([normal, worst, worst, worst, worst])
 }
 
+/// Products of more than 32 bits on the longest path of a step.
+pub fn long_products(program: &Program) -> u32 {
+    let longest = PathCost::of_function(&program.step).worst;
+    longest.multiplications - longest.narrow
+}
+
 /// Digest of a normalised specification, FNV-1a, whatever the name in its first line. The core is
 /// not part of it.
 pub fn digest(spec_toml: &str) -> u64 {
@@ -375,6 +387,8 @@ mod tests {
         assert!(with(2401, None).is_too_long());
         assert!(with(2200, Some(Times::of([0.1; 5]))).is_too_long());
         assert!(!with(2100, Some(Times::of([0.1; 5]))).is_too_long());
+        let in_c_only = [2401, 1201, 1200].map(|cycles| with(cycles, None).is_too_long_in_c_only());
+        assert_eq!(in_c_only, [false, true, false], "twice the time in C");
     }
 
     /// The name and the core change nothing of what a drive computes.

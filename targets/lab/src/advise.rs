@@ -10,14 +10,17 @@
 
 use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
+use crate::envelope::envelope_on;
 use crate::period::long_period;
+use crate::plant::PlantParams;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
 use hexagen_codegen::diagnostics::Code;
-use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
+use hexagen_codegen::spec::{BusSource, Envelope, Field, OF_CORE, apply_variant};
 use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// The default drive: what is generated where a file says nothing of the controller.
@@ -91,7 +94,8 @@ pub struct Point {
     pub speed_pct: u32,
     /// What deviates, if anything.
     pub deviation: Option<&'static str>,
-    /// Mean torque, percent of what is demanded with the true EMF constant; none for a drive that trips.
+    /// Mean torque, percent of what is demanded with the true EMF constant, or of what a stated limit of the bus current
+    /// leaves of that at this speed; none for a drive that trips.
     pub torque_pct: Option<f64>,
     /// Peak-to-peak ripple, percent of the mean.
     pub ripple_pct: Option<f64>,
@@ -122,6 +126,9 @@ pub struct Tried {
     pub limit_pct: Option<f64>,
     /// Why it is not the recommended one.
     pub why_not: Option<String>,
+    /// Whether it is the controller that shows how to add one, and is no choice for a drive.
+    #[serde(skip)]
+    pub is_example: bool,
 }
 
 impl Tried {
@@ -136,9 +143,13 @@ impl Tried {
             overruns: false,
             limit_pct: None,
             why_not: None,
+            is_example: false,
         }
     }
 }
+
+/// The controller that shows how to add one.
+const EXAMPLE: &str = "p-pwm";
 
 /// All variants, and the recommended one.
 #[derive(Clone, Debug, Serialize)]
@@ -339,6 +350,7 @@ fn try_drive(variant: &'static str, drive: &Prepared) -> Result<Tried, LabError>
     let mut tried = Tried {
         cycles: time.map(|time| time.most_cycles() as u32),
         overruns: time.is_some_and(StepTime::is_too_long),
+        is_example: drive.spec.controller.kind() == EXAMPLE,
         ..Tried::new(variant)
     };
     for speed in SPEEDS {
@@ -373,8 +385,10 @@ fn run(
     };
     let rpm = drive.rated_rpm() * f64::from(speed_pct) / 100.0;
     let torque = drive.demand();
-    let expected = drive.rated_torque() * plant.scale_kb.unwrap_or(1.0);
+    let demanded = drive.rated_torque() * plant.scale_kb.unwrap_or(1.0);
     let params = plant.plant(drive)?;
+    let left = left_by_limit(drive, &params, rpm).filter(|left| *left < demanded);
+    let expected = left.unwrap_or(demanded);
     let found = measured(
         drive,
         &params,
@@ -387,13 +401,30 @@ fn run(
     Ok(Point {
         speed_pct,
         deviation,
-        torque_pct: mean.map(|mean| 100.0 * mean / expected),
+        // More than a limit leaves is an overshoot of the limit, and no merit.
+        torque_pct: mean.map(|mean| {
+            let percent = 100.0 * mean / expected;
+            left.map_or(percent, |_| percent.min(100.0))
+        }),
         ripple_pct: figures.ripple_pp_pct,
         copper_w: figures
             .current_rms_a
             .map(|rms| 3.0 * drive.spec.motor.resistance * rms * rms),
         switching_hz: figures.switching_hz,
     })
+}
+
+/// Torque that a stated limit of the bus current leaves at a speed, Nm; none where it does not act.
+fn left_by_limit(drive: &Prepared, plant: &PlantParams, rpm: f64) -> Option<f64> {
+    let limited = envelope_on(&drive.spec, plant);
+    limited.bus_current?;
+    let free = Envelope {
+        bus_current: None,
+        ..limited
+    };
+    let omega_m = rpm * TAU / 60.0;
+    let left = limited.torque(omega_m);
+    (left < free.torque(omega_m)).then_some(left)
 }
 
 impl Advice {
@@ -408,6 +439,11 @@ impl Advice {
             "{} of {many} variants run without a trip and within the period",
             left.len()
         );
+        self.keep(&mut left, &|tried| {
+            tried
+                .is_example
+                .then(|| "an example of a controller, not for a drive".to_owned())
+        });
         let rules: [(&str, Runs); 2] = [
             ("on the stated motor", |tried| &tried.nominal),
             ("with deviations", |tried| &tried.deviating),
@@ -595,6 +631,10 @@ mod tests {
                 tried("rough", [100.0, 9.0], [100.0, 9.0], 30),
                 tried("touchy", [100.0, 1.0], [100.0, 6.0], 40),
                 tried("lean", [99.5, 2.5], [99.0, 3.5], 300),
+                Tried {
+                    is_example: true,
+                    ..tried("p-pwm", [100.0, 0.5], [100.0, 0.5], 5)
+                },
             ],
             recommended: None,
             reason: String::new(),
@@ -611,6 +651,8 @@ mod tests {
             "97.0 %",
             "9.0 %",
             "6.0 % of ripple with deviations",
+            "",
+            "an example",
         ];
         for (tried, told) in advice.tried.iter().zip(against) {
             let why_not = tried.why_not.as_deref().unwrap_or_default();

@@ -12,7 +12,7 @@ use crate::text::significant;
 use crate::times::Time;
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::Envelope;
-use hexagen_codegen::spec::{RotorSensing, Spec};
+use hexagen_codegen::spec::{BusSource, RotorSensing, Spec};
 use hexagen_codegen::timing::StepTime;
 use serde::Serialize;
 
@@ -113,6 +113,13 @@ pub struct Judgement {
     pub reach_v: f64,
     /// Speed up to which the bus drives the whole current of the demanded torque, rpm.
     pub envelope_rpm: f64,
+    /// Bus voltage that the EMF is compared with, volt: the file's `bus_min`, else the nominal one.
+    pub emf_bus_v: f64,
+    /// Speed from which on the EMF between two terminals exceeds it, rpm.
+    pub emf_bus_rpm: f64,
+    /// The stated `over_speed` or, without one, the stated `maximum_speed`, with its name, rpm; none with field weakening.
+    #[serde(skip)]
+    pub highest_speed: Option<(&'static str, f64)>,
     /// ADC counts of the rated current.
     pub rated_counts: f64,
     /// Greatest current drawn from the bus, ampere, where it is limited.
@@ -121,6 +128,9 @@ pub struct Judgement {
     /// Greatest current returned to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_current_limit_a: Option<f64>,
+    /// Voltages of a measured bus at which the drive trips and its braking fades, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bus_levels: Option<String>,
     /// Options that nobody stated, with the value that a rule chose; not those of any number.
     pub chosen: Vec<Chosen>,
     /// Runs: slow, at rated speed, and there at the least bus voltage where `bus_min` is stated.
@@ -154,6 +164,11 @@ impl Judgement {
         let set_point = torque / envelope.torque_constant();
         let rpm = |omega_m: f64| omega_m * 30.0 / std::f64::consts::PI;
         let times = &drive.generated.interface.times;
+        let emf_bus_v = drive
+            .least_bus
+            .map_or(inverter.v_bus, |_| inverter.lowest_bus());
+        let per_speed = motor.emf_constant * motor.emf_shape.line_to_line_peak();
+        let weakens = drive.spec.controller.common().field_weakening;
         let mut judgement = Self {
             motor: drive.motor.clone(),
             controller: drive.variant.clone(),
@@ -166,9 +181,16 @@ impl Judgement {
             rating_v: envelope.bus_voltage(motor.rated_speed, set_point) * envelope.reach,
             reach_v: inverter.v_bus * envelope.reach,
             envelope_rpm: rpm(envelope.speed(torque).unwrap_or(0.0)),
+            emf_bus_v,
+            emf_bus_rpm: rpm(emf_bus_v / per_speed),
+            highest_speed: drive
+                .highest_speed
+                .filter(|_| !weakens)
+                .map(|(field, speed)| (field, rpm(speed))),
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
             return_current_limit_a: inverter.bus_currents.returned,
+            bus_levels: bus_levels(drive, [emf_bus_v, rpm(emf_bus_v / per_speed)]),
             chosen: chosen(drive),
             points,
             step: times.iter().map(Time::from).collect(),
@@ -190,7 +212,10 @@ impl Judgement {
             Some(format!("{most} {way}"))
         });
         let limits: Vec<String> = limits.collect();
-        (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")))
+        let currents = (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")));
+        let parts = currents.into_iter().chain(self.bus_levels.clone());
+        let parts: Vec<String> = parts.collect();
+        (!parts.is_empty()).then(|| parts.join("; "))
     }
 
     /// The error of a drive that does not work.
@@ -243,7 +268,14 @@ impl Judgement {
         {
             return (false, format!("does not hold its rating: {text}"));
         }
-        let mut buts = Vec::new();
+        let returned_most = self.return_current_limit_a;
+        // What endangers comes first: of many clauses the last are cut.
+        let mut buts: Vec<String> = lowest
+            .iter()
+            .filter(|point| point.is_braked())
+            .filter_map(|point| point.lost_on_bus(returned_most))
+            .collect();
+        buts.extend(self.emf_beyond_bus());
         if self.torque_nm < HELD / 100.0 * drive.rated_torque() {
             buts.push(format!(
                 "`max_current` allows {} of the rated {} only",
@@ -257,10 +289,10 @@ impl Judgement {
         if !rated.is_held() {
             buts.push(left);
         }
-        let returned_most = self.return_current_limit_a;
         buts.extend(
             lowest
                 .iter()
+                .filter(|point| !point.is_braked())
                 .filter_map(|point| point.lost_on_bus(returned_most)),
         );
         buts.extend(self.rippling(&drive.spec).map(|(_, text)| text));
@@ -287,6 +319,19 @@ impl Judgement {
             format!("works, but {}", buts.join("; "))
         };
         (true, verdict)
+    }
+
+    /// What is told of a stated speed beyond that at which the EMF is the bus voltage.
+    fn emf_beyond_bus(&self) -> Option<String> {
+        let (field, most) = self.highest_speed?;
+        (most > self.emf_bus_rpm).then(|| {
+            format!(
+                "from {} rpm on the EMF exceeds a bus of {} and brakes, whatever is asked, below `{field}` of {} rpm",
+                self.emf_bus_rpm.floor(),
+                engineering(self.emf_bus_v, "V"),
+                most.floor(),
+            )
+        })
     }
 
     /// The greatest ripple on the nominal bus, percent and in words, if it is more than that of a default drive with
@@ -343,13 +388,12 @@ impl Point {
                     "on a bus of {bus} it makes {torque} % of the demand at rated speed"
                 ))
             }
-            // The EMF exceeds the voltage of the bus.
-            Some(torque) if torque < -BRAKES => {
+            Some(torque) if self.is_braked() => {
                 let torque = significant(-torque, 3);
                 let returned = -self.bus_current_a.unwrap_or(0.0);
                 let beyond = returned_most.filter(|most| returned > *most).map(|most| {
                     let most = engineering(most, "A");
-                    format!(", more than `return_current_limit` of {most}")
+                    format!(", above `return_current_limit` of {most}")
                 });
                 Some(format!(
                     "on a bus of {bus} its EMF brakes it at rated speed with {torque} % of the demand, whatever is asked, and returns {}{}",
@@ -359,6 +403,11 @@ impl Point {
             }
             _ => Some(format!("a bus of {bus} does not drive it at rated speed")),
         }
+    }
+
+    /// Whether the EMF exceeds the voltage of the bus and brakes.
+    fn is_braked(&self) -> bool {
+        self.torque_pct.is_some_and(|torque| torque < -BRAKES)
     }
 
     fn is_held(&self) -> bool {
@@ -376,6 +425,56 @@ fn longest_step(time: &StepTime) -> Option<String> {
 fn too_long_in_control(time: &StepTime) -> Option<String> {
     let percent = time.percent_of_period(time.told().control_cycles);
     (percent > 100.0).then(|| format!("a step in control may take {percent} % of the period"))
+}
+
+/// A limit of the bus over its nominal voltage within which a battery may come to it.
+const NEAR: f64 = 0.1;
+
+/// Where the drive trips by the voltage of a measured bus, and where its braking fades. Limits near the nominal voltage
+/// that nobody stated are told as such. `emf`: a voltage in volt, and the speed in rpm at which the EMF reaches it.
+fn bus_levels(drive: &Prepared, emf: [f64; 2]) -> Option<String> {
+    let inverter = &drive.spec.inverter;
+    let BusSource::Measured {
+        under,
+        over,
+        braking,
+        min,
+        max,
+        ..
+    } = inverter.bus
+    else {
+        return None;
+    };
+    let volts = |level: f64| engineering(level, "V");
+    let [below, above] = [("below", under), ("above", over)]
+        .map(|(side, level)| (level > 0.0).then(|| format!("{side} {}", volts(level))));
+    let levels: Vec<String> = below.into_iter().chain(above).collect();
+    let mut told = match levels.as_slice() {
+        [] => "no trip by its voltage".to_owned(),
+        levels => format!("trips {}", levels.join(", ")),
+    };
+    told += &braking.map_or("; no braking fade".to_owned(), |fade| {
+        format!("; braking fades from {}", volts(fade.full))
+    });
+    let is_near = |name: &&str| {
+        let level = if *name == "bus_min" { min } else { max };
+        (level / inverter.v_bus - 1.0).abs() <= NEAR
+    };
+    let near: Vec<&str> = (drive.limits_of_others.iter().copied())
+        .filter(|name| is_near(&name))
+        .collect();
+    if !near.is_empty() {
+        told += &format!(
+            "; {} not stated: give your battery's range",
+            near.join(" and ")
+        );
+    }
+    if drive.least_bus.is_some() {
+        let [volts, rpm] = emf;
+        let volts = engineering(volts, "V");
+        told += &format!("; EMF {volts} at {} rpm", rpm.floor());
+    }
+    Some(told)
 }
 
 fn chosen(drive: &Prepared) -> Vec<Chosen> {

@@ -72,6 +72,46 @@ pub fn trip_above_adc_range(trip: &Part, range: &Part, reach: f64) -> Diagnostic
     )
 }
 
+/// A largest set-point of so many `times` the rated current.
+pub fn current_far_above_rated(max: &Part, rated: &Part, times: f64) -> Diagnostic {
+    let warning = Diagnostic::new(
+        Code::CurrentFarAboveRated,
+        &max.location,
+        format!(
+            "`max_current`: {} is {} times the rated current of {}, so the windings may take {} times the copper loss of the rating, and nothing in the drive limits for how long; lower it, or correct `rated_current`",
+            max.given,
+            significant(times),
+            rated.given,
+            significant(times * times),
+        ),
+    );
+    with_parts(warning, &[rated])
+}
+
+/// A gain of the current sensors far from that of the board, ampere per count: the one that is taken, and the board's.
+pub fn gain_unlike_board(own: &Part, board: &Part, [gain, of_board]: [f64; 2]) -> Diagnostic {
+    let times = significant(of_board / gain);
+    let follows = if gain > of_board {
+        format!(
+            "true currents and torque are {times} times what is asked, and the loop, which sees too large a change, may trip with `OverCurrent`"
+        )
+    } else {
+        format!(
+            "true currents and torque are {times} times what is asked, as is the true current of a trip"
+        )
+    };
+    let [gain, of_board] = [gain, of_board].map(|gain| engineering(gain, "A"));
+    let warning = Diagnostic::new(
+        Code::GainUnlikeBoard,
+        &own.location,
+        format!(
+            "`{}`: {} makes {gain} a count, the board's `{}` of {} {of_board}: if the board's is right, {follows}; measure the gain, remove the field, or describe a board with other sensors in a file of its own",
+            own.field, own.given, board.field, board.given,
+        ),
+    );
+    with_parts(warning, &[board])
+}
+
 /// The largest set-point and the trip level; currents in ampere.
 #[derive(Clone, Debug)]
 pub struct TripRoom {
@@ -136,6 +176,21 @@ fn without_room(code: Code, room: &TripRoom, relation: &str) -> Diagnostic {
     with_parts(
         Diagnostic::new(code, &room.max.location, message),
         &[&room.level, &room.range],
+    )
+}
+
+/// A limit of the bus current above a trip level that is itself too near to the largest set-point, ampere.
+pub fn bus_current_above_trip(limit: &Part, trip: f64, needed: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        &limit.location,
+        format!(
+            "`{}`: {} lies above the trip level of {}, which is too near to `max_current`; state a `trip_current` of {}",
+            limit.field,
+            limit.given,
+            engineering(trip, "A"),
+            engineering(at_least(needed), "A"),
+        ),
     )
 }
 

@@ -249,7 +249,7 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         Code::RatingBeyondBus,
         at,
         format!(
-            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`",
+            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`, or check the bases of the EMF constant and `resistance`",
             engineering(beyond.bus, "V"),
         ),
     )

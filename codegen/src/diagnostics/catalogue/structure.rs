@@ -92,7 +92,7 @@ pub fn unknown_field(at: &Location, section: &str, name: &str, known: &[&str]) -
     let mut advice = did_you_mean(name, known);
     if advice.is_empty() {
         advice = if known.len() > MANY {
-            "; `hexagen::specification` in the documentation lists its fields".to_owned()
+            "; `hexagen new FILE` writes a file that names the fields, and `hexagen::specification` in the documentation explains each".to_owned()
         } else {
             format!("; it takes {}", list(known, "and"))
         };

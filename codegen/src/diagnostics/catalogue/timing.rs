@@ -49,40 +49,80 @@ pub fn period_too_long(
     )
 }
 
-/// A step may take longer than the control period. `given` is the core as written; `most`: cycles of a
-/// step at most; `estimate`: the cycles without the error, and the error as a part of them; `clock` in
-/// hertz, stated or the chip's; `period` in seconds.
-pub fn step_exceeds_period(
-    at: &Location,
-    given: &str,
-    (chip, most): (&str, f64),
-    (clock, is_stated): (f64, bool),
-    period: f64,
-    estimate: Option<(u32, f64)>,
-) -> Diagnostic {
-    let told = match estimate {
-        Some((cycles, error)) => {
-            let error = percent((100.0 * error).ceil() / 100.0);
-            format!(
-                "{most} cycles on {chip} in Rust (estimated as {cycles}, with an error of up to {error})"
-            )
-        }
-        None => format!("{most} cycles on {chip} in Rust"),
-    };
-    let faster = if is_stated {
-        ""
-    } else {
-        "state `core_clock` if your core is faster, "
-    };
+/// A step that may take longer than the control period.
+#[derive(Clone, Copy, Debug)]
+pub struct LongStep<'a> {
+    /// The core as written.
+    pub given: &'a str,
+    /// The chip whose cycles were counted.
+    pub chip: &'a str,
+    /// Cycles of a step at most, in Rust and in C.
+    pub most: [f64; 2],
+    /// Clock of the core, hertz.
+    pub clock: f64,
+    /// Whether the specification states the clock.
+    pub is_stated: bool,
+    /// Control period, second.
+    pub period: f64,
+    /// Cycles in Rust without the error, and the error as a part of them; none for a counted drive.
+    pub estimate: Option<(u32, f64)>,
+}
+
+impl LongStep<'_> {
+    /// What the control period has, a clause, and what to do first.
+    fn of_period(&self) -> String {
+        let faster = if self.is_stated {
+            ""
+        } else {
+            "state `core_clock` if your core is faster, "
+        };
+        format!(
+            "the control period of {} has {} at {}; {faster}",
+            engineering(self.period, "s"),
+            (self.clock * self.period).floor(),
+            engineering(self.clock, "Hz"),
+        )
+    }
+
+    /// Greatest control frequencies of a step in Rust and in C.
+    fn frequencies(&self) -> [String; 2] {
+        self.most
+            .map(|most| engineering(at_most(self.clock / most), "Hz"))
+    }
+}
+
+/// A step that may take longer than the control period in Rust, and so in C.
+pub fn step_exceeds_period(at: &Location, step: &LongStep) -> Diagnostic {
+    let [most, in_c] = step.most.map(f64::ceil);
+    let estimated = step.estimate.map_or(String::new(), |(cycles, error)| {
+        let error = percent((100.0 * error).ceil() / 100.0);
+        format!(" (estimated as {cycles}, with an error of up to {error})")
+    });
+    let [rust, c] = step.frequencies();
     Diagnostic::new(
         Code::StepExceedsPeriod,
         at,
         format!(
-            "`target`: {given}: a step takes up to {told}, trips and braking included, and the control period of {} has {} at {}; {faster}control at {} at most (lower `f_pwm`, or raise `pwm_per_control`), or choose a controller with a shorter step",
-            engineering(period, "s"),
-            (clock * period).floor(),
-            engineering(clock, "Hz"),
-            engineering(at_most(clock / most), "Hz"),
+            "`target`: {}: a step takes up to {most} cycles on {} in Rust{estimated}, {in_c} in C, trips and braking included, and {}control at {rust} at most, in C at {c} (lower `f_pwm`, or raise `pwm_per_control`), or choose a controller with a shorter step",
+            step.given,
+            step.chip,
+            step.of_period(),
+        ),
+    )
+}
+
+/// A step that may take longer than the control period in C, while it fits in Rust.
+pub fn step_exceeds_period_in_c(at: &Location, step: &LongStep) -> Diagnostic {
+    let [_, in_c] = step.most.map(f64::ceil);
+    let [_, frequency] = step.frequencies();
+    Diagnostic::new(
+        Code::StepExceedsPeriod,
+        at,
+        format!(
+            "`target`: {}: in C a step takes up to {in_c} cycles on {} (what counted drives take more there, at most), trips and braking included, and {}in C control at {frequency} at most (lower `f_pwm`, or raise `pwm_per_control`); in Rust it fits",
+            step.given,
+            step.chip,
+            step.of_period(),
         ),
     )
 }

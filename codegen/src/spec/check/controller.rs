@@ -3,7 +3,8 @@
 use super::angle;
 use super::inverter::Inverter;
 use super::motor::Motor;
-use crate::diagnostics::{Collector, Location, catalogue};
+use super::relations;
+use crate::diagnostics::{Collector, Location, catalogue, engineering};
 use crate::spec::ast::{Field, Section, Value};
 use crate::spec::controller::common::{
     FIELD_WEAKENING, HALL_LEARNING, HallEdges, Surroundings, TORQUE_LEARNING, refuse,
@@ -67,6 +68,9 @@ pub(super) fn read(
         must_be_low: inverter.sensing.must_be_low(),
         reads_off_legs: inverter.sensing.reads_off_legs(),
         inertia: motor.inertia,
+        torque_per_speed: motor
+            .finish()
+            .map(|motor| motor.torque_rating() / motor.rated_speed),
         rated_frequency: match (motor.pole_pairs, &motor.rated_speed) {
             (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),
             _ => None,
@@ -89,7 +93,7 @@ pub(super) fn read(
     angle::refuse_halls(&reader, motor, of_halls, errors);
     let sensing = match motor.rotor {
         Some(RotorSource::Halls) => {
-            let capture = read_capture(&reader, inverter, errors);
+            let capture = read_capture(&reader, (inverter, motor), errors);
             let learning = controller.as_ref().map(|spec| spec.common().learning);
             let learning = learning.unwrap_or_default();
             for (option, learns) in [
@@ -97,7 +101,7 @@ pub(super) fn read(
                 (TORQUE_LEARNING, learning.torque),
             ] {
                 if learns && capture == Some(RotorSensing::SampledHalls) {
-                    refuse_sampled(&reader, option, errors);
+                    refuse_sampled(&reader, (option, inverter, motor), errors);
                 }
             }
             capture
@@ -109,14 +113,29 @@ pub(super) fn read(
 
 /// The places of Hall sensors are learnt from the times between their edges, and the torque constant from the speed,
 /// which must not lag.
-fn refuse_sampled(reader: &Reader, option: &'static str, errors: &mut Collector) {
+fn refuse_sampled(
+    reader: &Reader,
+    (option, inverter, motor): (&'static str, &Inverter, &Motor),
+    errors: &mut Collector,
+) {
     if reader.field("hall_capture").is_none() {
-        let clock = [("hall_timer_clock", "1 MHz")];
+        let clock = valid_clock(inverter, motor);
+        let clock = [("hall_timer_clock", clock.as_str())];
         reader.require_beside(errors, [option, "on"], ("inverter", &clock));
         return;
     }
     let why = "the time between two edges is known to a control period only";
     refuse(reader, option, ["hall_capture", "sampled"], why, errors);
+}
+
+/// Clocks of a capture timer that a remedy names, hertz.
+const CLOCKS: [f64; 7] = [1e6, 5e5, 2e5, 1e5, 5e4, 2e4, 1e4];
+
+/// The fastest of them with which the timer counts a sector at the least speed.
+fn valid_clock(inverter: &Inverter, motor: &Motor) -> String {
+    let mut clocks = CLOCKS.into_iter();
+    let clock = clocks.find(|clock| relations::counts_sectors(inverter, motor, *clock));
+    engineering(clock.unwrap_or(CLOCKS[0]), "Hz")
 }
 
 /// The EMF tells the torque constant where the bus is known, and no current is sent against the field.
@@ -193,7 +212,7 @@ fn read_kind(field: &Field, errors: &mut Collector) -> Option<&'static Kind> {
 /// sampled ones.
 fn read_capture(
     reader: &Reader,
-    inverter: &Inverter,
+    (inverter, motor): (&Inverter, &Motor),
     errors: &mut Collector,
 ) -> Option<RotorSensing> {
     let by_default = if inverter.hall_timer_clock_given {
@@ -209,7 +228,8 @@ fn read_capture(
     }
     let Some(clock) = &inverter.hall_timer_clock else {
         if !inverter.hall_timer_clock_given {
-            let clock = [("hall_timer_clock", "1 MHz")];
+            let clock = valid_clock(inverter, motor);
+            let clock = [("hall_timer_clock", clock.as_str())];
             reader.require_beside(errors, ["hall_capture", "timer"], ("inverter", &clock));
         }
         return None;

@@ -11,8 +11,22 @@ use crate::spec::{BusCurrents, ControllerSpec, EmfShape, Reference};
 /// Margin of the default trip level above the currents that whole vectors reach.
 const ROOM: f64 = 1.05;
 
+/// Largest set-point over the rated current from which on a typing error is likelier than an overload.
+const FAR_ABOVE: f64 = 5.0;
+
 /// Minimum of the largest set-point, ADC counts: half a count is 5 % of it.
 const LEAST_COUNTS: f64 = 10.0;
+
+/// Trip level and largest set-point, ampere.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Currents {
+    pub trip: f64,
+    pub max: f64,
+    /// Greatest phase current at the largest set-point.
+    peak: f64,
+    /// Least trip level that leaves room above it.
+    needed: f64,
+}
 
 /// Trip current and largest set-point.
 pub(super) fn finish(
@@ -23,7 +37,7 @@ pub(super) fn finish(
     controller: Option<&ControllerSpec>,
     errors: &mut Collector,
     warnings: &mut Vec<Diagnostic>,
-) -> Option<(f64, f64)> {
+) -> Option<Currents> {
     let rated = motor.rated_current.as_ref()?;
     let given = inverter.trip_current.as_ref();
     let drive = drive(inverter, motor, controller, rated.si);
@@ -59,10 +73,25 @@ pub(super) fn finish(
         most: drive.largest_below(greatest_trip(inverter, adc)),
     };
     check_health(&drive, rated.si, &room, errors);
+    if let Some(max) = &inverter.max_current
+        && max.si >= FAR_ABOVE * rated.si * (1.0 - 1e-9)
+    {
+        let times = max.si / rated.si;
+        warnings.push(catalogue::current_far_above_rated(
+            &max.part,
+            &rated.part,
+            times,
+        ));
+    }
     if (drive.peak()..room.needed * (1.0 - 1e-9)).contains(&trip) {
         warnings.push(catalogue::trip_near_set_point(&room));
     }
-    Some((whole_counts(trip, adc.gain, f64::floor), drive.max_current))
+    Some(Currents {
+        trip: whole_counts(trip, adc.gain, f64::floor),
+        max: drive.max_current,
+        peak: room.peak,
+        needed: room.needed,
+    })
 }
 
 /// The values that the currents depend on, as far as they are stated.
@@ -155,18 +184,24 @@ pub(super) fn check_within(
 }
 
 /// Limits of the bus current, which is at most that of a phase.
-pub(super) fn bus(inverter: &Inverter, trip: f64, errors: &mut Collector) -> BusCurrents {
+pub(super) fn bus(inverter: &Inverter, currents: Currents, errors: &mut Collector) -> BusCurrents {
     let least = LEAST_COUNTS * inverter.adc.as_ref().map_or(0.0, |adc| adc.gain);
+    let Currents {
+        trip, peak, needed, ..
+    } = currents;
+    let is_too_low = |level: f64| trip < level * (1.0 - 1e-9);
     let [drawn, returned] = inverter.bus_currents.each_ref().map(|given| {
         let given = given.as_ref()?;
-        check_within(
-            &given.part,
-            given.si,
-            (least, "ten ADC counts"),
-            trip,
-            errors,
-        );
-        Some(given.si)
+        let (part, current) = (&given.part, given.si);
+        let fits_needed = current <= needed * (1.0 + 1e-9);
+        if is_too_low(peak) && fits_needed {
+            // Told of the trip level, which is raised anyway.
+        } else if is_too_low(needed) && fits_needed && current > trip * (1.0 + 1e-9) {
+            errors.push(catalogue::bus_current_above_trip(part, trip, needed));
+        } else {
+            check_within(part, current, (least, "ten ADC counts"), trip, errors);
+        }
+        Some(current)
     });
     BusCurrents { drawn, returned }
 }

@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_3;
 
 /// Default `minimum_speed` over `rated_speed`, and the most that it becomes for a fast Hall timer.
 const MINIMUM_SPEED: f64 = 0.02;
-const GREATEST_MINIMUM: f64 = 0.04;
+pub(super) const GREATEST_MINIMUM: f64 = 0.04;
 
 /// Default pre-charge time, second.
 const PRECHARGE: f64 = 1e-3;
@@ -69,8 +69,9 @@ pub(super) fn inverter(
         );
         (minimum, maximum)
     });
-    let (t_s, adc, (trip_current, max_current), (minimum_speed, maximum_speed)) =
+    let (t_s, adc, currents, (minimum_speed, maximum_speed)) =
         (inverter.t_s?, adc?, currents?, speeds?);
+    let (trip_current, max_current) = (currents.trip, currents.max);
     rated?;
     let (first, others) = adc.sensors.split_first()?;
     let dead_time = inverter.dead_time.as_ref().map_or(0.0, |given| given.si);
@@ -97,7 +98,7 @@ pub(super) fn inverter(
         trip_current,
         max_current,
         bus_clamp: inverter.bus_clamp.as_ref().map(|given| given.si),
-        bus_currents: currents::bus(inverter, trip_current, errors),
+        bus_currents: currents::bus(inverter, currents, errors),
         rotor_sensing: capture?,
         minimum_speed,
         maximum_speed,

@@ -303,6 +303,14 @@ fn read_timer(
     )
 }
 
+/// The sensors of a board alone; none where it does not state them, or they are in error, which is told of elsewhere.
+pub(super) fn gain(board: &Reader, phases: SensedPhases) -> Option<Adc> {
+    let mut untold = Collector::new();
+    let adc = read_adc(board, phases, &mut untold);
+    let is_right = untold.finish().is_none();
+    adc.filter(|_| is_right)
+}
+
 /// The sensors that are read: a count's worth, offset and sign, each for all phases or one of each
 /// that has a sensor.
 fn read_adc(reader: &Reader, phases: SensedPhases, errors: &mut Collector) -> Option<Adc> {

@@ -64,6 +64,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     let contradicts =
         consistency::check(&motor_reader, &motor, &inverter, &mut errors, &mut warnings);
     let decay = relations::check_period(&motor_reader, &motor, &inverter, &mut errors);
+    check_gain(ast, &inverter, &mut warnings);
     relations::check_inertia(&motor_reader, &motor, &mut warnings);
     // A wrong R or L is told of once.
     if !contradicts && decay != Some(relations::Decay::Absurd) {
@@ -110,6 +111,28 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
             catalogue::internal(fallback, "a specification without errors is incomplete").into()
         })),
     }
+}
+
+/// A gain over that of the board from which on one of both is likely wrong.
+const UNLIKE: f64 = 2.0;
+
+/// Warns of a gain of the current sensors that is far from that of the board which the file names.
+fn check_gain(ast: &SpecAst, inverter: &Inverter, warnings: &mut Vec<Diagnostic>) -> Option<()> {
+    let board = ast.board.as_ref()?;
+    let section = &board.file.as_ref()?.inverter;
+    let reader = Reader::new("inverter", section, schema::INVERTER, &board.name.location);
+    let of_board = inverter::gain(&reader, inverter.sensing.phases)?;
+    let own = inverter.adc.as_ref()?;
+    let ratio = own.gain / of_board.gain;
+    if ratio.max(1.0 / ratio) > UNLIKE * (1.0 + 1e-9) {
+        let gains = [own.gain, of_board.gain];
+        warnings.push(catalogue::gain_unlike_board(
+            &own.part,
+            &of_board.part,
+            gains,
+        ));
+    }
+    Some(())
 }
 
 /// Warns where Hall edges that are seen at samples only make the torque ripple.

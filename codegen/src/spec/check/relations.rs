@@ -1,5 +1,6 @@
 //! Motor and inverter together: control period, bus voltage, speeds.
 
+use super::finish::GREATEST_MINIMUM;
 use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::catalogue::{self, Part};
@@ -261,6 +262,20 @@ pub(super) fn slowest(
     let [_, widest] = motor.extreme_sectors();
     let sector = FRAC_PI_3 * widest;
     Some(per_second * sector / (GREATEST_AGE * f64::from(motor.pole_pairs?)))
+}
+
+/// Whether a Hall timer of this clock counts a control period, and a sector at the least speed, stated or by default; so
+/// too where one of these is not known.
+pub(super) fn counts_sectors(inverter: &Inverter, motor: &Motor, clock: f64) -> bool {
+    let ticks = inverter.t_s.map_or(2.0, |t_s| clock * t_s);
+    let slowest = slowest(inverter, motor, Some(RotorSensing::TimedHalls { ticks }));
+    let rated = motor.rated_speed.as_ref().map(|rated| rated.si);
+    let stated = inverter.minimum_speed.as_ref().map(|given| given.si);
+    let most = stated.or(rated.map(|rated| GREATEST_MINIMUM * rated));
+    let is_measured = slowest
+        .zip(most)
+        .is_none_or(|(slowest, most)| slowest <= most);
+    (2.0..=65535.0).contains(&ticks) && is_measured
 }
 
 /// Minimum, rated and maximum speed in ascending order, within the Hall timer and the period.

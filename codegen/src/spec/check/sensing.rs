@@ -72,7 +72,7 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
     const NEEDED: [(&str, &str); 3] = [
         ("settling_time", "1 us"),
         ("aperture_time", "200 ns"),
-        ("conversion_time", "0 us"),
+        ("conversion_time", "400 ns"),
     ];
     let [settling, aperture, conversion, lead] = [
         "settling_time",

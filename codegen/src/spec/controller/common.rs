@@ -2,7 +2,7 @@
 
 use super::core::{Core, Target};
 use crate::diagnostics::catalogue::{self, Part};
-use crate::diagnostics::{Collector, at_least, at_most, engineering};
+use crate::diagnostics::{Collector, at_least, at_most, engineering, significant};
 use crate::spec::options::{Row, if_on, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
@@ -389,6 +389,8 @@ pub(crate) struct Surroundings {
     pub reads_off_legs: bool,
     /// Inertia, kg m2.
     pub inertia: Option<f64>,
+    /// Rated torque over rated speed, Nm s/rad.
+    pub torque_per_speed: Option<f64>,
     /// Electrical frequency at rated speed, hertz.
     pub rated_frequency: Option<f64>,
 }
@@ -717,7 +719,7 @@ fn read_speed_loop(
         errors.push(catalogue::needed_field(
             at,
             "speed_loop: on",
-            ["motor", "inertia", "24 g cm2"],
+            ["motor", "inertia", &likely_inertia(drive)],
         ));
         return None;
     };
@@ -726,6 +728,22 @@ fn read_speed_loop(
         inertia,
         acceleration_limit: acceleration.map(|given| given.si),
     })
+}
+
+/// Time from rest to rated speed of an inertia that a remedy names, second: that of a small vehicle or a fan.
+const RUN_UP: f64 = 0.5;
+
+/// An inertia that fits the rating, with one digit, as of a wheel and what it moves; a rotor's where that is not known.
+fn likely_inertia(drive: &Surroundings) -> String {
+    let Some(acceleration) = drive.torque_per_speed else {
+        return "24 g cm2".to_owned();
+    };
+    let inertia = RUN_UP * acceleration;
+    let digit = 10_f64.powf(inertia.log10().floor());
+    format!(
+        "{} kg m2",
+        significant((inertia / digit).round().max(1.0) * digit)
+    )
 }
 
 /// Refuses the commutation options where no leg is turned off, because of `setting`.

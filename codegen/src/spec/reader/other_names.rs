@@ -5,7 +5,7 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 14] = [
+const NAMES: [(&str, &[&str]); 16] = [
     ("kind", &["type"]),
     (
         "poles",
@@ -50,6 +50,29 @@ const NAMES: [(&str, &[&str]); 14] = [
             "switching_frequency",
             "switching_freq",
             "f_sw",
+        ],
+    ),
+    (
+        "bus_current_limit",
+        &[
+            "max_bus_current",
+            "bus_max_current",
+            "maximum_bus_current",
+            "bus_current",
+            "battery_current",
+            "max_battery_current",
+            "battery_current_limit",
+        ],
+    ),
+    (
+        "return_current_limit",
+        &[
+            "max_return_current",
+            "regen_current",
+            "max_regen_current",
+            "regen_current_limit",
+            "max_charge_current",
+            "charge_current_limit",
         ],
     ),
     ("rated_torque", &["nominal_torque", "continuous_torque"]),

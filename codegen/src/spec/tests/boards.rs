@@ -370,6 +370,35 @@ fn a_board_names_its_core_where_the_drive_names_none() {
     // A core of the drive has the clock of the drive, not that of another core.
     let own = core_of("pdcc { target: cortex_m4 }");
     assert_eq!(own, (Some("cortex_m4"), None, 32));
+    // A clock alone is that of the board's core.
+    let faster = core_of("pdcc { core_clock: 48 MHz }");
+    assert_eq!(faster, (Some("cortex_m0"), Some(48e6), 16));
+}
+
+/// The gain of sensors that a file states over its board's.
+#[test]
+fn a_gain_far_from_the_boards_is_warned_of() {
+    let told = |adc_gain: &str| {
+        let folder = Folder::new("gain", MOTOR, BOARD);
+        let call = format!(
+            "Rear {{ motor: \"motors/hub.toml\", board: \"boards/mine.toml\", inverter: {{ adc_gain: {adc_gain}, max_current: 20 A }} }}"
+        );
+        let (checked, _) = folder.check(&call);
+        let (_, origins) = checked.expect("is right");
+        let told: Vec<String> = origins.warnings().iter().map(ToString::to_string).collect();
+        told.join("; ")
+    };
+    let coarse = told("59 mA/count");
+    let follows = "0.4915 times what is asked, and the loop";
+    assert!(
+        coarse.contains("HX0622") && coarse.contains(follows),
+        "{coarse}"
+    );
+    let fine = told("14 mA/count");
+    assert!(fine.contains("2.071 times what is asked"), "{fine}");
+    for close in ["57 mA/count", "15 mA/count"] {
+        assert!(!told(close).contains("HX0622"), "{close}");
+    }
 }
 
 #[test]

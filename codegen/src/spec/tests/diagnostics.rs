@@ -239,11 +239,12 @@ fn every_kind_of_diagnostic_has_a_case() {
     let calls = cases(IN_CALLS).map(|(_, delta)| found_in_call(&changed(COMPLETE_CALL, delta)));
     let seen: BTreeSet<Code> = calls.flatten().map(|found| found.code).collect();
     let unseen = Code::ALL.iter().filter(|code| !seen.contains(code));
-    // Of two files (`boards`), of command lines, of hysteresis control beside a low trip level, and of the generator's own faults.
+    // Of two files (`boards`), of command lines, of hysteresis control beside a low trip level, of a board's sensors, and of the generator's own faults.
     let elsewhere = [
         Code::OutsideOfBoard,
         Code::Variant,
         Code::SwingAboveTrip,
+        Code::GainUnlikeBoard,
         Code::Internal,
     ];
     assert_eq!(unseen.copied().collect::<Vec<_>>(), elsewhere);

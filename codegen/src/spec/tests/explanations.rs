@@ -5,9 +5,10 @@ use crate::diagnostics::Code;
 use crate::spec::schema;
 
 /// What no motor file makes by itself.
-const ELSEWHERE: [Code; 5] = [
+const ELSEWHERE: [Code; 6] = [
     Code::UnknownBoard,
     Code::OutsideOfBoard,
+    Code::GainUnlikeBoard,
     Code::MotorFile,
     Code::Variant,
     Code::Internal,

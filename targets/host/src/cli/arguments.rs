@@ -252,7 +252,7 @@ pub struct PlantArguments {
     /// Inertia of rotor and load as `"120 g cm2"`: a free shaft that starts at the given speed
     #[arg(long, value_name = "INERTIA", value_parser = quantity::inertia, allow_hyphen_values = true)]
     pub inertia: Option<f64>,
-    /// Load torque as `0.5Nm`, which opposes the motion
+    /// Load torque as `0.5Nm`, which opposes the motion as friction does: it does not drive the shaft, as a slope would
     #[arg(long, value_name = "TORQUE", value_parser = quantity::torque, allow_hyphen_values = true)]
     pub load: Option<f64>,
     /// Initial electrical angle as `30deg`: one run instead of three [default: 0.1, 0.117, 0.134 rad]

@@ -136,7 +136,7 @@ pub fn tell_warnings(drive: &Prepared) {
     for warning in &drive.warnings {
         note(warning);
     }
-    if drive.regulates_speed {
+    if drive.left_out.is_some() {
         note("the speed loop is left out: this command sets the torque");
     }
 }

@@ -36,7 +36,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     print_table(&table(&advice))?;
     let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
     print_text(&paragraph(&format!(
-        "Torque: of the rated {} (the percentages of `check` and `report` are of what `max_current` allows), at {speeds} % of rated speed, the worst of \
+        "Torque: of the rated {}, or of what a stated limit of the bus current leaves of it (the percentages of `check` and `report` are of what `max_current` allows), at {speeds} % of rated speed, the worst of \
          them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3, k_b x 1.1 and the bus 15 % low, each alone. Copper loss and \
          switching at rated speed. Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core \
          that is named or assumed.",

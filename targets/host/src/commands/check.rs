@@ -10,6 +10,8 @@ use crate::cli::{
     DriveArguments, Failure, note, print_json, print_verdict, tell_warnings, verdict_lines,
 };
 use clap::Args;
+use hexagen_codegen::timing::long_products;
+use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::Judgement;
 
 /// Options of `check`.
@@ -42,13 +44,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_json(&judgement)?;
     } else {
         tell_warnings(&drive);
-        // Only a core that is not the board's own needs a word.
-        if let Some(core) = drive
-            .core_of_board
-            .as_deref()
-            .filter(|core| core.contains(": "))
-        {
+        if let Some(core) = of_core(&drive) {
             note(&format!("the board's chip: {core}"));
+        }
+        if let Some(text) = &drive.warning_in_c {
+            note(text);
         }
         let assumed = motor.assumed();
         if !assumed.is_empty() {
@@ -66,6 +66,23 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     judgement
         .failure()
         .map_or(Ok(()), |error| Err(Failure::Check(error)))
+}
+
+/// Cycles that a long product takes more on a Cortex-M3 than on a Cortex-M4, at most.
+const LONG_PRODUCT: u32 = 6;
+
+/// What the board's file says of a core that is not its own: only that needs a word.
+fn of_core(drive: &Prepared) -> Option<String> {
+    let core = drive.core_of_board.as_deref()?;
+    let core = Some(core).filter(|core| core.contains(": "))?;
+    if !core.contains("Cortex-M3") {
+        return Some(core.to_owned());
+    }
+    let products = long_products(drive.generated.graph.program());
+    Some(format!(
+        "{core}; a step has up to {products} of them: at most {} cycles more",
+        LONG_PRODUCT * products
+    ))
 }
 
 /// Most lines.

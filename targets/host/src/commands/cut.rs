@@ -1,8 +1,10 @@
-//! What cuts a torque besides the voltage of the bus.
+//! What cuts a torque besides the voltage of the bus, and which speeds a drive holds.
 
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{BusSource, InverterSpec};
+use hexagen_codegen::spec::{BusSource, InverterSpec, RotorSensing, Spec, SpeedLoop};
+use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::limit_acts;
+use std::f64::consts::TAU;
 
 /// The limit of the bus current and the fade that cut a torque on a bus of `v_bus` volt, in words; none where neither
 /// does. `bus_current`: the mean that was drawn, ampere; none where no limit needs it.
@@ -30,6 +32,31 @@ pub fn cut_by(
     let of_voltage = fade.map(|_| format!("`{name}` on a bus of {bus}"));
     let both: Vec<String> = current.into_iter().chain(of_voltage).collect();
     (!both.is_empty()).then(|| both.join(", "))
+}
+
+/// A speed in rpm, or the greatest that the drive follows, and in that case why it ends there.
+pub fn followed(drive: &Prepared, rpm: f64) -> (f64, Option<&'static str>) {
+    let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
+    if rpm > most {
+        (most, Some(", maximum_speed"))
+    } else {
+        (rpm, None)
+    }
+}
+
+/// Electrical turns in the time 1/f of a speed loop's bandwidth f below which its delay makes the speed oscillate.
+const TURNS: f64 = 4.0;
+
+/// Least speed that a speed loop holds, rpm, where the mean over an electrical turn of Hall edges tells it.
+pub fn least_held(spec: &Spec, speed: SpeedLoop) -> Option<f64> {
+    let has_halls = !matches!(spec.inverter.rotor_sensing, RotorSensing::Angle(_));
+    let pole_pairs = f64::from(spec.motor.pole_pairs);
+    has_halls.then(|| 60.0 * TURNS * speed.bandwidth / pole_pairs)
+}
+
+/// Bandwidth of a speed loop that holds a speed in rpm, hertz.
+pub fn bandwidth_for(spec: &Spec, rpm: f64) -> f64 {
+    rpm.abs() * f64::from(spec.motor.pole_pairs) / (60.0 * TURNS)
 }
 
 fn of_current(

@@ -260,7 +260,7 @@ fn verdict(study: &FaultStudy, drive: &Prepared) -> String {
         lines
             .push("The speed is not watched: `over_speed` in [inverter] turns that on.".to_owned());
     }
-    if drive.regulates_speed {
+    if drive.left_out.is_some() {
         lines.push(
             "The drive's speed loop was left out, so that the torque is that of each run; its stall time-out was not."
                 .to_owned(),

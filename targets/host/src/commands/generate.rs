@@ -1,7 +1,7 @@
 //! `hexagen generate`: code, intermediate form or data sheet of one controller.
 
 use crate::cli::{
-    DriveArguments, Emit, Failure, note, print_json, print_text, tell_warnings, warn, write_file,
+    DriveArguments, Emit, Failure, note, print_json, print_text, tell_warnings, write_file,
 };
 use clap::{Args, ValueEnum as _};
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
@@ -35,8 +35,8 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = options.drive.prepare()?;
     tell_warnings(&drive);
-    if let (Emit::C99, Some(text)) = (options.emit, too_long_in_c(&drive)) {
-        warn(&text);
+    if let (Emit::C99, Some(text)) = (options.emit, &drive.warning_in_c) {
+        note(text);
     }
     let files = files_of(&drive, options.emit);
     if options.json {
@@ -64,20 +64,6 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             )))
         }
     }
-}
-
-/// What is told of a step that may take longer than the control period in C, on a core that is named.
-fn too_long_in_c(drive: &Prepared) -> Option<String> {
-    let named = drive.generated.interface.times.first();
-    let time = named.filter(|time| time.is_named)?;
-    let percent = time.percent_of_period(time.most_cycles_in_c() as u32);
-    (percent > 100.0).then(|| {
-        format!(
-            "in C a step may take {} % of the control period in control on a {}, with trips and braking {percent} % (as the counted drives take more in C, at most): measure it, or take a longer period (`f_pwm`, `pwm_per_control`)",
-            time.percent_of_period(time.control_cycles_in_c() as u32),
-            time.chip.core
-        )
-    })
 }
 
 /// A file of a text.

@@ -1,12 +1,13 @@
 //! `hexagen limit`: the highest speed at which a controller holds the torque.
 
-use super::cut::cut_by;
+use super::cut::{cut_by, followed};
 use super::ran::Ran;
 use crate::cli::{
     Failure, RunArguments, paragraph, print_json, print_text, spinner, tell_warnings,
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::spec::Envelope;
 use hexagen_lab::closed_loop::{
     LimitOptions, LimitOutcome, RunOptions, Side, SpeedLimit, TOLERANCE, measure, percent,
     speed_limit,
@@ -91,7 +92,10 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<Scan, Failure> {
     let plant = arguments.plant.plant(drive)?;
     let run = arguments.plant.options().run(drive, 1.0, torque);
     let set_point = arguments.plant.options().set_point(drive, torque);
-    let scan = LimitOptions::new(drive.rated_rpm(), torque);
+    let scan = LimitOptions {
+        least: torque_of_count(drive),
+        ..LimitOptions::new(drive.rated_rpm(), torque)
+    };
     let progress = spinner("scanning speeds");
     let maker = drive.maker(arguments.model(), set_point);
     let limit = speed_limit(&plant, &run, &scan, &maker)?;
@@ -107,6 +111,25 @@ fn scan(arguments: &RunArguments, drive: &Prepared) -> Result<Scan, Failure> {
     progress.finish_and_clear();
     let bus_current = at_last.transpose()?.and_then(|at| at.figures.bus_current_a);
     Ok(Scan { limit, bus_current })
+}
+
+/// Torque of an ADC count, Nm: a demand of few counts is held no better.
+fn torque_of_count(drive: &Prepared) -> f64 {
+    let per_ampere = Envelope::of(&drive.spec).torque_constant();
+    drive.spec.inverter.adc_gain.abs() * per_ampere
+}
+
+/// When a torque counts as held, and up to where the drive follows the rotor.
+fn criterion(drive: &Prepared, torque: f64) -> String {
+    let count = torque_of_count(drive);
+    if count > TOLERANCE * torque.abs() {
+        format!(
+            "Held: its mean within an ADC count of the current, {}",
+            engineering(count, "Nm")
+        )
+    } else {
+        format!("Held: its mean within {:.0} %", 100.0 * TOLERANCE)
+    }
 }
 
 /// Runs the command.
@@ -131,13 +154,17 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.run.json {
         print_json(&outcome)?;
     } else {
-        print_found(&outcome, texts)?;
+        print_found(&outcome, &drive, texts)?;
     }
     Failure::of_trip(outcome.limit.tripped)
 }
 
 /// Prints the limit; `texts` say it in words, with that without the board's window.
-fn print_found(outcome: &Outcome, (own, free): (String, Option<String>)) -> Result<(), Failure> {
+fn print_found(
+    outcome: &Outcome,
+    drive: &Prepared,
+    (own, free): (String, Option<String>),
+) -> Result<(), Failure> {
     let free = match free {
         None => String::new(),
         Some(free) if free == own => "; the same with in-phase sensors".to_owned(),
@@ -145,9 +172,13 @@ fn print_found(outcome: &Outcome, (own, free): (String, Option<String>)) -> Resu
     };
     let bounds = outcome.bounds.map_or_else(String::new, |bounds| {
         if bounds.envelope_rpm > 0.0 {
+            let (lasts, why) = followed(drive, bounds.envelope_rpm);
             format!(
-                "\nHeld: its mean within {:.0} %. The bus drives the whole current up to {} rpm; no profile within its peak gives the torque beyond {} rpm.",
-                100.0 * TOLERANCE, bounds.envelope_rpm.floor(), bounds.any_profile_rpm.floor()
+                "\n{}. The bus drives the whole current up to {} rpm{}; no profile within its peak gives the torque beyond {} rpm.",
+                criterion(drive, outcome.torque_nm),
+                lasts.floor(),
+                why.unwrap_or_default(),
+                bounds.any_profile_rpm.floor()
             )
         } else {
             "\nThe torque is beyond the drive at every speed.".to_owned()

@@ -1,13 +1,13 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
-use super::cut::cut_by;
+use super::cut::{bandwidth_for, cut_by, least_held};
 use super::ran::Ran;
 use crate::cli::{
-    self, Failure, PlantArguments, RunArguments, paragraph, parse_rpm, parse_speed, parse_torque,
-    print_json, print_text, spinner, warn, write_file,
+    self, Failure, PlantArguments, RunArguments, note, paragraph, parse_rpm, parse_speed,
+    parse_torque, print_json, print_text, spinner, warn, write_file,
 };
 use clap::Args;
-use hexagen_codegen::diagnostics::engineering;
+use hexagen_codegen::diagnostics::{at_most, engineering};
 use hexagen_codegen::spec::{Reference, RotorSensing};
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, LoadResponse, LoadStep, MOST_RECORDED, Measurement, RunOptions, SETTLED,
@@ -258,11 +258,18 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             .and_then(|set| LoadResponse::of(&measured, &run, set, options.least_rpm(&drive))),
         figures: measured.figures,
     };
-    if let Some(text) = not_reached(&outcome) {
+    if let Some(text) = not_reached(&outcome, &drive) {
         warn(&text);
     }
+    if options.speed_set == Some(0.0) && options.run.plant.load.is_some() {
+        note(
+            "--load opposes the motion and does not drive the shaft: that the speed stays 0 says nothing of a slope",
+        );
+    }
     let plant = deviations.plant(&drive)?;
-    if let Some(text) = beyond_drive(&drive, &plant, options, &outcome) {
+    if let Some(text) = braked(&drive, &plant, &run, options, &outcome)? {
+        warn(&text);
+    } else if let Some(text) = beyond_drive(&drive, &plant, options, &outcome) {
         warn(&text);
     }
     if options.run.json {
@@ -274,10 +281,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// What is told of a speed that has not settled, or not come back after a load step.
-fn not_reached(outcome: &Outcome) -> Option<String> {
+fn not_reached(outcome: &Outcome, drive: &Prepared) -> Option<String> {
     let speed = outcome.speed?;
     let (set, last) = (speed.set_rpm?, speed.final_rpm?);
-    let remedy = "; if the bus and `maximum_speed` allow that speed, raise --torque, up to what `max_current` allows, or lower the load";
+    let remedy = of_speed(set, outcome, drive);
     if speed.settled == Some(false) {
         return Some(format!(
             "--speed-set {set}: the speed has not settled within {:.0} % of that, or of the start's if it is faster; it is {} rpm at the end{remedy}",
@@ -293,6 +300,26 @@ fn not_reached(outcome: &Outcome) -> Option<String> {
     })
 }
 
+/// What to do for a set speed that is not reached or held, a clause.
+fn of_speed(set: f64, outcome: &Outcome, drive: &Prepared) -> String {
+    let spec = &drive.spec;
+    let speed = spec.controller.common().speed;
+    let least = speed.and_then(|speed| least_held(spec, speed));
+    if let Some(least) = least.filter(|least| set.abs() < *least && set != 0.0) {
+        return format!(
+            "; below {least:.0} rpm the delay of the measured speed makes it oscillate: lower `speed_bandwidth` to {}, or take `rotor = \"angle\"`",
+            engineering(at_most(bandwidth_for(spec, set)), "Hz")
+        );
+    }
+    let is_whole = outcome.torque_nm.abs() >= drive.reach() * (1.0 - 1e-9);
+    let more = if is_whole {
+        "raise `max_current`"
+    } else {
+        "raise --torque, up to what `max_current` allows,"
+    };
+    format!("; if the bus and `maximum_speed` allow that speed, {more} or lower the load")
+}
+
 /// A demand over the envelope's torque from which on it is beyond the envelope.
 const BEYOND: f64 = 1.001;
 
@@ -301,6 +328,52 @@ const BRAKES: f64 = 0.01;
 
 /// Share of a demand below which a torque that a limit may have cut is told.
 const CUT: f64 = 0.97;
+
+/// What is told of an EMF that exceeds the bus and brakes; none with a speed loop.
+fn braked(
+    drive: &Prepared,
+    plant: &PlantParams,
+    run: &RunOptions,
+    options: &Options,
+    outcome: &Outcome,
+) -> Result<Option<String>, Failure> {
+    let omega_m = run.omega_m;
+    let demand = outcome.torque_nm;
+    // Between two terminals at most, of any shape.
+    let emf = 2.0 * plant.k_phase.into_iter().fold(0.0, f64::max) * omega_m.abs();
+    let brakes = |made: &f64| made * omega_m.signum() < -BRAKES * drive.rated_torque();
+    let braking = outcome.figures.mean_torque_nm.filter(brakes);
+    let is_within = omega_m.abs() <= drive.spec.inverter.maximum_speed * (1.0 + 1e-9);
+    let Some(braking) = braking.filter(|_| {
+        options.speed_set.is_none() && is_within && demand * omega_m >= 0.0 && emf > plant.v_bus
+    }) else {
+        return Ok(None);
+    };
+    let most = drive.reach().copysign(omega_m);
+    let run = RunOptions {
+        current: run_of(&drive.spec, omega_m, most).current,
+        ..run.clone()
+    };
+    let set_point = options.run.plant.options().set_point(drive, most);
+    let at_most = measure(plant, &run, drive.maker(options.run.model(), set_point))?;
+    let at_most = at_most.figures.mean_torque_nm;
+    let way = match at_most.filter(|made| made * omega_m > 0.0) {
+        Some(made) => format!(
+            "at this set-point; the greatest, {} Nm, makes {} Nm",
+            significant(most, 4),
+            significant(made, 4)
+        ),
+        None => "whatever is asked, and no limit holds what it returns; `coast` or stay slower"
+            .to_owned(),
+    };
+    Ok(Some(format!(
+        "{} Nm at {} rpm: the EMF exceeds the bus of {} and brakes with {} Nm, {way}",
+        significant(demand, 4),
+        options.start_rpm(),
+        engineering(plant.v_bus, "V"),
+        significant(braking.abs(), 4)
+    )))
+}
 
 /// What a speed or torque beyond the drive's means; none within, and none with a speed loop.
 fn beyond_drive(
@@ -334,20 +407,6 @@ fn beyond_drive(
     let within = envelope.torque(omega_m.abs());
     let is_motoring = demand * omega_m > 0.0;
     let made = outcome.figures.mean_torque_nm;
-    // Between two terminals at most, of any shape.
-    let emf = 2.0 * plant.k_phase.into_iter().fold(0.0, f64::max) * omega_m.abs();
-    let brakes = |made: &f64| made * omega_m.signum() < -BRAKES * drive.rated_torque();
-    if let Some(braking) = made.filter(brakes)
-        && demand * omega_m >= 0.0
-        && emf > plant.v_bus
-    {
-        return Some(format!(
-            "{} Nm at {rpm} rpm: the EMF exceeds the bus of {} and brakes with {} Nm, whatever is asked, and no limit holds what it returns; `coast` or stay slower",
-            significant(demand, 4),
-            engineering(plant.v_bus, "V"),
-            significant(braking.abs(), 4)
-        ));
-    }
     if demand == 0.0 {
         return None;
     }
@@ -373,7 +432,7 @@ fn beyond_drive(
             significant(demand, 4),
             engineering(envelope.v_bus, "V"),
             significant(within, 4),
-            outcome.ran.motor
+            options.run.motor
         )
     })
 }

@@ -98,7 +98,8 @@ fn a_crowded_file_is_checked_in_as_few_lines() {
         let said = run(["check", file]);
         assert!(said.code <= 1, "{said:?}");
         assert!(said.stderr.contains("warning[HX0618]"), "{said:?}");
-        let has_limits = text.contains("bus_current_limit");
+        // Of the bus current, and the voltages of a measured bus.
+        let has_limits = text.contains("bus_current_limit") || text.contains("measured");
         assert_lines(&said, 10 + usize::from(has_limits));
         assert_eq!(said.stdout.contains("\nlimits "), has_limits, "{said:?}");
         for row in ["motor ", "step ", "torque ", "next "] {

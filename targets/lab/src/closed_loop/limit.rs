@@ -44,11 +44,16 @@ impl Side {
         }
     }
 
-    /// The tolerance's limit on this side, relative to the demand.
+    /// The limit of [`TOLERANCE`] on this side, relative to the demand.
     pub fn edge(self) -> f64 {
+        self.edge_of(TOLERANCE)
+    }
+
+    /// The limit of a tolerance on this side, both relative to the demand.
+    fn edge_of(self, tolerance: f64) -> f64 {
         match self {
-            Self::Below => 1.0 - TOLERANCE,
-            Self::Above => 1.0 + TOLERANCE,
+            Self::Below => 1.0 - tolerance,
+            Self::Above => 1.0 + tolerance,
         }
     }
 }
@@ -65,11 +70,15 @@ impl Held {
     /// The side on which a mean torque is lost; `None` if it is held. Both torques in the same
     /// unit, with their signs.
     pub fn lost(self, torque: f64, demand: f64) -> Option<Side> {
+        self.lost_beyond(torque, demand, TOLERANCE)
+    }
+
+    fn lost_beyond(self, torque: f64, demand: f64, tolerance: f64) -> Option<Side> {
         let share = torque / demand;
         let is_lost = |side: &&Side| match side {
             // NaN is not held.
-            Side::Below => share.is_nan() || share < side.edge(),
-            Side::Above => share > side.edge(),
+            Side::Below => share.is_nan() || share < side.edge_of(tolerance),
+            Side::Above => share > side.edge_of(tolerance),
         };
         self.sides().iter().find(is_lost).copied()
     }
@@ -91,6 +100,9 @@ pub struct LimitOptions {
     pub to_rpm: f64,
     /// Step in rpm; the default is 20.
     pub step_rpm: f64,
+    /// Least tolerance of the torque, Nm, where [`TOLERANCE`] of the demand is less: an ADC count's, say. The default is 0.
+    #[serde(skip)]
+    pub least: f64,
 }
 
 impl LimitOptions {
@@ -103,7 +115,17 @@ impl LimitOptions {
             from_rpm: 0.2 * rated_rpm,
             to_rpm: 1.6 * rated_rpm,
             step_rpm: 20.0,
+            least: 0.0,
         }
+    }
+
+    /// Tolerance of the torque, relative to the demand.
+    pub fn tolerance(&self) -> f64 {
+        TOLERANCE.max(self.least / self.torque.abs())
+    }
+
+    fn lost(&self, torque: f64) -> Option<Side> {
+        self.held.lost_beyond(torque, self.torque, self.tolerance())
     }
 }
 
@@ -219,7 +241,7 @@ where
             let lost = match measured {
                 Ok(torque) => {
                     curve.push((rpm, torque));
-                    let Some(side) = options.held.lost(torque, options.torque) else {
+                    let Some(side) = options.lost(torque) else {
                         continue;
                     };
                     Ok((side, torque / options.torque))
@@ -229,7 +251,8 @@ where
             let limit = before.map(|(rpm_before, torque_before)| match lost {
                 Ok((side, share)) => {
                     let share_before = torque_before / options.torque;
-                    let part = (side.edge() - share_before) / (share - share_before);
+                    let part =
+                        (side.edge_of(options.tolerance()) - share_before) / (share - share_before);
                     rpm_before + (rpm - rpm_before) * part
                 }
                 // A tripped drive has no torque to interpolate with.
@@ -262,6 +285,18 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_small_torque_is_held_within_its_least_tolerance() {
+        let scan = |torque: f64| LimitOptions {
+            least: 0.05,
+            ..LimitOptions::new(1000.0, torque)
+        };
+        assert_eq!(scan(1.0).lost(0.951), None);
+        assert_eq!(scan(1.0).lost(0.949), Some(Side::Below));
+        assert_eq!(scan(-1.0).lost(-1.051), Some(Side::Above));
+        assert_eq!(scan(2.0).tolerance(), TOLERANCE);
+    }
 
     #[test]
     fn a_torque_is_held_within_three_percent_on_either_side() {

@@ -11,9 +11,9 @@ use hexagen::Format;
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::emit::datasheet::emit_datasheet;
 use hexagen_codegen::emit::rust::{Surface, emit_rust, readable_rust};
-use hexagen_codegen::pipeline::{Generated, generate, warnings};
+use hexagen_codegen::pipeline::{Generated, generate, warning_in_c, warnings};
 use hexagen_codegen::spec::{
-    BusSource, OF_CORE, Spec, SpecAst, apply_variant, check, parse_toml, variant_of,
+    BusSource, Spec, SpecAst, SpeedLoop, TARGET, apply_variant, check, parse_toml, variant_of,
 };
 use hexagen_reference::{BitTrue, Error, FormatTable, Ideal};
 use std::path::Path;
@@ -29,14 +29,20 @@ pub struct Prepared {
     pub spec: Spec,
     /// Lowest bus voltage of the whole torque, volt, where the motor's file states a `bus_min` of its own.
     pub least_bus: Option<f64>,
-    /// Whether the drive has a speed loop, which was left out to set its torque.
-    pub regulates_speed: bool,
+    /// The stated `over_speed` or, without one, the stated `maximum_speed`, with its name, rad/s.
+    pub highest_speed: Option<(&'static str, f64)>,
+    /// Limits of a measured bus that the motor's file does not state, but its board or the default.
+    pub limits_of_others: Vec<&'static str>,
+    /// Speed loop of the drive, which was left out to set its torque.
+    pub left_out: Option<SpeedLoop>,
     /// The generated program.
     pub generated: Generated,
     /// What the board's file says of the core that it states, where the controller names none itself.
     pub core_of_board: Option<String>,
     /// The generator's warnings.
     pub warnings: Vec<String>,
+    /// The generator's warning of a step that is too long in C only.
+    pub warning_in_c: Option<String>,
     /// The specification as read by the reference.
     pub reference: hexagen_reference::Spec,
     /// Formats in the types of the runtime.
@@ -84,6 +90,8 @@ pub fn prepare_ast(
     let (spec, origins) = check(&ast)?;
     let generated = generate(&spec, &origins)?;
     let warnings = warnings(&spec, &origins, &generated.interface.times);
+    let warning_in_c = warning_in_c(&origins, &generated.interface.times);
+    let warning_in_c = warning_in_c.map(|warning| warning.to_string());
     let formats = formats(&generated.interface.formats);
     let models = models(&generated.interface.spec_toml, &formats);
     let (reference, bit_true, ideal) = models.map_err(|error| {
@@ -98,11 +106,14 @@ pub fn prepare_ast(
         least_bus: (ast.inverter.field("bus_min").is_some())
             .then(|| spec.inverter.lowest_driving_bus())
             .filter(|least| *least < spec.inverter.v_bus),
-        regulates_speed: false,
+        highest_speed: highest_speed(&ast, &spec),
+        limits_of_others: limits_of_others(&ast, &spec),
+        left_out: None,
         core_of_board: core_of_board(&ast),
         spec,
         generated,
         warnings: warnings.iter().map(ToString::to_string).collect(),
+        warning_in_c,
         reference,
         formats,
         source: ast.source,
@@ -111,12 +122,30 @@ pub fn prepare_ast(
     })
 }
 
+/// The speed that a file lets its rotor reach, where it states one.
+fn highest_speed(ast: &SpecAst, spec: &Spec) -> Option<(&'static str, f64)> {
+    let over = spec.inverter.over_speed;
+    let over = over.map(|speed| ("over_speed", speed));
+    let is_stated = ast.inverter.field("maximum_speed").is_some();
+    let maximum = is_stated.then_some(("maximum_speed", spec.inverter.maximum_speed));
+    over.or(maximum)
+}
+
+/// Limits of a measured bus that the file itself does not state.
+fn limits_of_others(ast: &SpecAst, spec: &Spec) -> Vec<&'static str> {
+    let stated = [["bus_min", "under_voltage"], ["bus_max", "over_voltage"]];
+    let is_measured = matches!(spec.inverter.bus, BusSource::Measured { .. });
+    let others = stated.into_iter().filter(|names| {
+        let own = |name: &&str| ast.inverter.field(name).is_some();
+        is_measured && !names.iter().any(own)
+    });
+    others.map(|[limit, _]| limit).collect()
+}
+
 fn core_of_board(ast: &SpecAst) -> Option<String> {
-    let names_core = OF_CORE
-        .iter()
-        .any(|option| ast.controller.field(option).is_some());
+    let names_core = ast.controller.field(TARGET).is_some();
     let file = ast.board.as_ref()?.file.as_ref()?;
-    let (_, told) = file.source.iter().find(|(name, _)| name == "target")?;
+    let (_, told) = file.source.iter().find(|(name, _)| name == TARGET)?;
     (!names_core).then(|| told.clone())
 }
 

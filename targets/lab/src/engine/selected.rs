@@ -232,7 +232,7 @@ impl SelectedMotor {
         let mut current_loop = prepare_ast(inner, &self.source.name, None)?;
         current_loop.generated.interface.times = drive.generated.interface.times;
         current_loop.warnings = drive.warnings;
-        current_loop.regulates_speed = true;
+        current_loop.left_out = drive.spec.controller.common().speed;
         Ok(current_loop)
     }
 }

@@ -50,7 +50,7 @@ impl Plan {
         let mut rows = plan(&motor, planned, [is_paper, false], &mut notes);
         rows.insert(0, of_file(&own));
         notes.extend(rows.iter().filter_map(limited));
-        notes.extend(own.regulates_speed.then(|| NO_SPEED_LOOP.to_owned()));
+        notes.extend(own.left_out.map(|_| NO_SPEED_LOOP.to_owned()));
         Ok(Self {
             given: given.to_owned(),
             on_board,
@@ -181,7 +181,7 @@ impl Plan {
     fn verify(&self, progress: &dyn Progress) -> Vec<Checked> {
         let rows = self.rows.iter().flat_map(|row| &row.drives);
         let rows = rows.map(|(_, drive)| drive);
-        let whole = self.own.regulates_speed.then_some(&self.whole);
+        let whole = self.own.left_out.map(|_| &self.whole);
         let drives: Vec<Prepared> = rows.chain(whole).cloned().collect();
         verify_drives(&drives, VERIFY_STEPS, 1, progress)
     }

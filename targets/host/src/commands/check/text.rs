@@ -1,7 +1,10 @@
 //! The lines of `hexagen check`.
 
+use crate::commands::cut::{followed, least_held};
 use hexagen_codegen::diagnostics::engineering;
-use hexagen_codegen::spec::{CurrentSensing, InverterSpec, MotorSpec, RotorSensing};
+use hexagen_codegen::spec::{
+    CurrentSensing, Envelope, InverterSpec, MotorSpec, RotorSensing, SpeedLoop,
+};
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::{Judgement, Point};
 use hexagen_lab::text::significant;
@@ -10,6 +13,9 @@ use std::iter::repeat;
 
 /// Torque of `max_current` over the demanded one above which it is told.
 const MORE: f64 = 1.01;
+
+/// Speed without the limit of the bus current over that with it from which on the limit is told.
+const LATER: f64 = 1.001;
 
 /// Titles and texts, of which the last is the `next` command; `with_reasons`: also each option chosen by default on
 /// a row of its own, with its reason. Of the clauses of a text the first is the most important.
@@ -55,9 +61,10 @@ fn of_motor(motor: &MotorSpec) -> String {
             format!("{} kg m2", significant(inertia, 3))
         });
     format!(
-        "{} pole pair{}, {}, {} per phase of a star; {}, {inertia}",
+        "{} pole pair{} ({} magnets), {}, {} per phase of a star; {}; {inertia}",
         motor.pole_pairs,
         if motor.pole_pairs == 1 { "" } else { "s" },
+        2 * motor.pole_pairs,
         engineering(motor.resistance, "ohm"),
         engineering(motor.inductance, "H"),
         engineering(motor.rated_torque_constant(), "Nm/A"),
@@ -82,10 +89,20 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         [slow, rated] => format!("{slow} kHz, at rated speed {rated} kHz"),
         rates => format!("{} kHz", rates.join(", ")),
     };
+    let speed = drive.left_out.map(|speed| of_speed_loop(speed, drive));
     format!(
-        "{}, {edges}; switches at {rates}",
-        drive.spec.controller.kind()
+        "{}, {edges}; switches at {rates}{}",
+        drive.spec.controller.kind(),
+        speed.unwrap_or_default(),
     )
+}
+
+/// Bandwidth of the speed loop, and the least speed that it holds where Hall edges tell it.
+fn of_speed_loop(speed: SpeedLoop, drive: &Prepared) -> String {
+    let bandwidth = engineering(speed.bandwidth, "Hz");
+    let from =
+        least_held(&drive.spec, speed).map_or(String::new(), |rpm| format!(", from {rpm:.0} rpm"));
+    format!("; speed loop {bandwidth}{from}")
 }
 
 /// The angle that a sensor of so many pole pairs tells of a motor of `all`.
@@ -130,11 +147,29 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
     } else {
         "whole current"
     };
+    let (end, why) = followed(drive, judgement.envelope_rpm);
+    let why = why
+        .map(str::to_owned)
+        .or_else(|| ended_by(judgement, drive));
     format!(
-        "rated speed takes {} (with L) of {reach}; {lasts} to {} rpm",
+        "rated speed takes {} (with L) of {reach}; {lasts} to {} rpm{}",
         engineering(judgement.rating_v, "V"),
-        judgement.envelope_rpm.floor(),
+        end.floor(),
+        why.unwrap_or_default(),
     )
+}
+
+/// ` (20 A of bus current)`, where that limit and not the voltage ends the whole current.
+fn ended_by(judgement: &Judgement, drive: &Prepared) -> Option<String> {
+    let limited = Envelope::of(&drive.spec);
+    let free = Envelope {
+        bus_current: None,
+        ..limited
+    };
+    let torque = judgement.torque_nm;
+    let most = engineering(judgement.bus_current_limit_a?, "A");
+    let is_limit = free.speed(torque)? > limited.speed(torque)? * LATER;
+    is_limit.then(|| format!(" (by {most} of bus current)"))
 }
 
 /// The demanded torque's current beside the rated one, the mean that it draws from the bus at rated speed,
