@@ -61,7 +61,7 @@ fn of_motor(motor: &MotorSpec) -> String {
             format!("{} kg m2", significant(inertia, 3))
         });
     format!(
-        "{} pole pair{} ({} magnets), {}, {} per phase of a star; {}; {inertia}",
+        "{} pole pair{} ({} magnets), star phase {}, {}; {}; {inertia}",
         motor.pole_pairs,
         if motor.pole_pairs == 1 { "" } else { "s" },
         2 * motor.pole_pairs,
