@@ -449,32 +449,30 @@ fn bus_levels(drive: &Prepared, emf: [f64; 2]) -> Option<String> {
     let [below, above] = [("below", under), ("above", over)]
         .map(|(side, level)| (level > 0.0).then(|| format!("{side} {}", volts(level))));
     let levels: Vec<String> = below.into_iter().chain(above).collect();
-    let mut told = match levels.as_slice() {
+    let trips = match levels.as_slice() {
         [] => "no trip by its voltage".to_owned(),
         levels => format!("trips {}", levels.join(", ")),
     };
-    told += &braking.map_or("; no braking fade".to_owned(), |fade| {
-        format!("; braking fades from {}", volts(fade.full))
+    let fades = braking.map_or("no braking fade".to_owned(), |fade| {
+        format!("braking fades from {}", volts(fade.full))
     });
     let is_near = |name: &&str| {
         let level = if *name == "bus_min" { min } else { max };
         (level / inverter.v_bus - 1.0).abs() <= NEAR
     };
     let near: Vec<&str> = (drive.limits_of_others.iter().copied())
-        .filter(|name| is_near(&name))
+        .filter(is_near)
         .collect();
-    if !near.is_empty() {
-        told += &format!(
-            "; {} not stated: give your battery's range",
-            near.join(" and ")
-        );
-    }
-    if drive.least_bus.is_some() {
-        let [volts, rpm] = emf;
-        let volts = engineering(volts, "V");
-        told += &format!("; EMF {volts} at {} rpm", rpm.floor());
-    }
-    Some(told)
+    let near = near.join(" and ");
+    let unstated =
+        (!near.is_empty()).then(|| format!("{near} not stated: give your battery's range"));
+    let emf = drive.least_bus.map(|_| {
+        let [level, rpm] = emf;
+        format!("EMF {} at {} rpm", volts(level), rpm.floor())
+    });
+    let parts = [Some(trips), Some(fades), unstated, emf];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    Some(parts.join("; "))
 }
 
 fn chosen(drive: &Prepared) -> Vec<Chosen> {
