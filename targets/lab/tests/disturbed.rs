@@ -237,10 +237,10 @@ fn no_disturbance_changes_the_current_or_makes_it_ripple() {
 fn a_wrong_constant_leaves_no_harmonics_of_a_trapezoid() {
     for motor in ["hurst-long", "linix-45zwn24-40"] {
         for variant in VARIANTS {
-            let drive = drive(motor, variant, false);
+            let drive = &drive(motor, variant, false);
             for disturbance in [Emf(0.8), Emf(1.2), Bus(0.85)] {
                 let misses = [60, 100].into_iter().flat_map(|speed| {
-                    let at = |signs| miss(&drive, disturbance, speed, signs);
+                    let at = move |signs| miss(drive, disturbance, speed, signs);
                     QUADRANTS.into_iter().filter_map(at)
                 });
                 let misses: Vec<String> = misses.map(|miss| miss.text).collect();
