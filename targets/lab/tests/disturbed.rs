@@ -61,6 +61,8 @@ const MISSED: &[(&str, Disturbance, f64, f64)] = &[
     ("hurst-long", Inductance(0.75), 0.3, 7.5),
     ("hurst-long", Inductance(1.3), 0.2, 6.0),
     ("ipower-gbm2804h", StatedDeadTime, 0.3, 7.0),
+    // Along the current, and no longer along the EMF, as which it is corrected.
+    ("linix-45zwn24-40", Resistance(2.0), 0.2, 5.5),
     ("odrive-d6374-150kv", StatedDeadTime, 2.0, 9.0),
     ("odrive-d6374-150kv", UnstatedDeadTime, 2.2, 10.0),
     ("tekin-redline-4600kv", Bus(0.85), 0.8, 8.0),
