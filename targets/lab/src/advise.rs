@@ -633,7 +633,7 @@ mod tests {
                 tried("lean", [99.5, 2.5], [99.0, 3.5], 300),
                 Tried {
                     is_example: true,
-                    ..tried("p-pwm", [100.0, 0.5], [100.0, 0.5], 5)
+                    ..tried("p-pwm", [100.0, 1.0], [100.0, 1.0], 5)
                 },
             ],
             recommended: None,
