@@ -143,7 +143,7 @@ const TARGET: &str = "controller.target";
 
 fn long_step<'a>(time: &'a StepTime, origins: &'a Origins) -> catalogue::LongStep<'a> {
     catalogue::LongStep {
-        given: origins.written(TARGET).unwrap_or_default(),
+        given: origins.given(TARGET, ""),
         chip: time.chip.name,
         most: [time.most_cycles(), time.most_cycles_in_c()],
         clock: time.clock,
@@ -159,10 +159,7 @@ fn long_step<'a>(time: &'a StepTime, origins: &'a Origins) -> catalogue::LongSte
 fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
     const SPEED: &str = "motor.rated_speed";
     // A limit of the bus current is meant to cut the torque.
-    let envelope = Envelope {
-        bus_current: None,
-        ..Envelope::of(spec)
-    };
+    let envelope = Envelope::of(spec).without_bus_limit();
     let rated = spec.motor.rated_speed;
     let set_point =
         (spec.motor.torque_rating() / envelope.torque_constant()).min(envelope.max_current);

@@ -243,9 +243,9 @@ pub fn model_target_emf<'b>(
     e_model
 }
 
-/// How far the squares of the EMF's lengths differ, times the current that the EMF of the greatest speed moves in a
-/// control period over the largest set-point, from which on the error of an EMF is corrected along the EMF itself. Below
-/// it an EMF constant 20 % off makes at most 4 % of ripple at rated speed (660 W motor: 0.11 and 3.0 %).
+/// Above this product the error of an EMF is corrected along the EMF's own shape: the unevenness of the shape, times a
+/// current over the largest set-point. The current is the one that the EMF of the greatest speed moves in a control period.
+/// Below it an EMF constant 20 % off makes at most 4 % of ripple at rated speed (660 W motor: 0.11 and 3.0 %).
 const UNEVEN: f64 = 0.15;
 
 /// Whether the EMF's error is corrected along the EMF's own shape, and not along the current parallel to it.

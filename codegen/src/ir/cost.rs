@@ -44,6 +44,11 @@ impl Cost {
         cost
     }
 
+    /// Products of more than 32 bits.
+    pub const fn long(&self) -> u32 {
+        self.multiplications - self.narrow
+    }
+
     /// All operations together.
     pub fn total(&self) -> u32 {
         self.additions + self.multiplications + self.comparisons + self.lookups + self.divisions

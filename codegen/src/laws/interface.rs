@@ -16,7 +16,6 @@ use crate::spec::{
     self, CurrentSensing, Envelope, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
 };
 use crate::timing::{self, Asked};
-use std::f64::consts::TAU;
 
 /// Builds the interface of a scaled controller.
 pub fn interface(
@@ -281,7 +280,7 @@ fn speed_loop(speed: SpeedLoop, pole_pairs: u32) -> [String; 8] {
             "reach it overshoots by 13.5 %, unless the set-point is a ramp. The speed is the mean of the last electrical turn: below".to_owned(),
             format!(
                 "{}, four turns in the time 1/f, its delay makes the speed oscillate around the set-point.",
-                rpm(4.0 * speed.bandwidth / f64::from(pole_pairs) * TAU)
+                rpm(speed.least_speed(pole_pairs))
             ),
         ]
 }

@@ -8,6 +8,14 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_6, PI, SQRT_2, TAU};
 
 const THIRD: f64 = TAU / 3.0;
 
+/// Angles of a scan over a sixth of a turn, with which the lengths of all shapes repeat.
+const ANGLES: u32 = 600;
+
+/// Every tenth of a degree of a sixth of a turn, radians.
+fn angles() -> impl Iterator<Item = f64> {
+    (0..ANGLES).map(|step| f64::from(step).to_radians() / 10.0)
+}
+
 impl EmfShape {
     /// Unit EMF of phase a at the electrical angle `theta_e` (radian), from -1 to 1.
     pub fn at(self, theta_e: f64) -> f64 {
@@ -82,40 +90,36 @@ impl EmfShape {
         }
     }
 
+    /// Squares of the length of the unit EMF in the plane, at the [`angles`].
+    fn squared_lengths(self) -> impl Iterator<Item = f64> {
+        angles().map(move |theta_e| self.squared_length(theta_e))
+    }
+
     /// Least length of the unit EMF in the plane.
     pub fn least_length(self) -> f64 {
-        // The shapes repeat with each sixth of a turn.
-        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
-        let squares = angles.map(|theta_e| self.squared_length(theta_e));
-        squares.fold(f64::INFINITY, f64::min).sqrt()
+        self.squared_lengths().fold(f64::INFINITY, f64::min).sqrt()
     }
 
     /// Greatest relative change per radian of the length of the unit EMF in the plane, whichever way.
     pub fn steepness(self) -> f64 {
         const STEP: f64 = 1e-3;
-        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
         let length = |theta_e: f64| self.squared_length(theta_e).sqrt();
         let slopes =
-            angles.map(|theta_e| (length(theta_e + STEP) / length(theta_e)).ln().abs() / STEP);
+            angles().map(|theta_e| (length(theta_e + STEP) / length(theta_e)).ln().abs() / STEP);
         slopes.fold(0.0, f64::max)
     }
 
-    /// Greatest over least square of the length of the unit EMF in the plane, less 1, over 600 angles of a tenth of a degree:
-    /// 0 of a sine, 1/3 of a trapezoid of 120 degrees.
+    /// Greatest over least square of the length of the unit EMF in the plane, less 1: 0 of a sine, 1/3 of a trapezoid of
+    /// 120 degrees.
     pub fn unevenness(self) -> f64 {
-        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
-        let squares = angles.map(|theta_e| self.squared_length(theta_e));
-        let (least, most) = squares.fold((f64::INFINITY, 0.0_f64), |(least, most), square| {
-            (least.min(square), most.max(square))
-        });
+        let least = self.squared_lengths().fold(f64::INFINITY, f64::min);
+        let most = self.squared_lengths().fold(0.0, f64::max);
         most / least - 1.0
     }
 
-    /// Mean of 1/s^2, s the length of the unit EMF in the plane, over 600 angles of a tenth of a degree.
+    /// Mean of 1/s^2, s the length of the unit EMF in the plane, over the 600 [`angles`].
     pub fn mean_inverse_square(self) -> f64 {
-        const ANGLES: u32 = 600;
-        let angles = (0..ANGLES).map(|step| f64::from(step).to_radians() / 10.0);
-        let inverses = angles.map(|theta_e| self.squared_length(theta_e).recip());
+        let inverses = self.squared_lengths().map(f64::recip);
         inverses.sum::<f64>() / f64::from(ANGLES)
     }
 

@@ -61,6 +61,15 @@ struct Line {
 }
 
 impl Envelope {
+    /// What the voltage allows where no limit of the bus current cuts it.
+    #[must_use]
+    pub fn without_bus_limit(self) -> Self {
+        Self {
+            bus_current: None,
+            ..self
+        }
+    }
+
     /// Of a drive at its nominal bus voltage.
     pub fn of(spec: &Spec) -> Self {
         let (motor, inverter) = (&spec.motor, &spec.inverter);

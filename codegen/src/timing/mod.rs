@@ -292,7 +292,7 @@ pub fn work(program: &Program) -> Times<Work> {
             1.0,
             program.states.len() as f64,
             f64::from(cost.additions + cost.comparisons),
-            f64::from(cost.multiplications - cost.narrow),
+            f64::from(cost.long()),
             f64::from(cost.narrow),
             f64::from(cost.lookups),
             f64::from(cost.divisions),
@@ -304,8 +304,7 @@ pub fn work(program: &Program) -> Times<Work> {
 
 /// Products of more than 32 bits on the longest path of a step.
 pub fn long_products(program: &Program) -> u32 {
-    let longest = PathCost::of_function(&program.step).worst;
-    longest.multiplications - longest.narrow
+    PathCost::of_function(&program.step).worst.long()
 }
 
 /// Digest of a normalised specification, FNV-1a, whatever the name in its first line. The core is

@@ -16,7 +16,7 @@ use crate::plant::PlantParams;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
 use hexagen_codegen::diagnostics::Code;
-use hexagen_codegen::spec::{BusSource, Envelope, Field, OF_CORE, apply_variant};
+use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
 use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -418,10 +418,7 @@ fn run(
 fn left_by_limit(drive: &Prepared, plant: &PlantParams, rpm: f64) -> Option<f64> {
     let limited = envelope_on(&drive.spec, plant);
     limited.bus_current?;
-    let free = Envelope {
-        bus_current: None,
-        ..limited
-    };
+    let free = limited.without_bus_limit();
     let omega_m = rpm * TAU / 60.0;
     let left = limited.torque(omega_m);
     (left < free.torque(omega_m)).then_some(left)

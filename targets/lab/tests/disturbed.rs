@@ -61,7 +61,7 @@ const MISSED: &[(&str, Disturbance, f64, f64)] = &[
     ("hurst-long", Inductance(0.75), 0.3, 7.5),
     ("hurst-long", Inductance(1.3), 0.2, 6.0),
     ("ipower-gbm2804h", StatedDeadTime, 0.3, 7.0),
-    // Along the current, and no longer along the EMF, as which it is corrected.
+    // The drop across the resistance lies along the current, and is corrected along the EMF.
     ("linix-45zwn24-40", Resistance(2.0), 0.2, 5.5),
     ("odrive-d6374-150kv", StatedDeadTime, 2.0, 9.0),
     ("odrive-d6374-150kv", UnstatedDeadTime, 2.2, 10.0),
@@ -234,7 +234,8 @@ fn no_disturbance_changes_the_current_or_makes_it_ripple() {
     }
 }
 
-/// Along the proportional current, which is short where the EMF is long, the harmonics would stay.
+/// The observer corrects the EMF along its own shape. Along the proportional current, which is short where the EMF is
+/// long, it would leave the harmonics uncorrected.
 #[test]
 fn a_wrong_constant_leaves_no_harmonics_of_a_trapezoid() {
     for motor in ["hurst-long", "linix-45zwn24-40"] {

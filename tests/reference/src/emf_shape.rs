@@ -137,18 +137,22 @@ impl EmfShape {
         a - (a + b + c) / 3.0
     }
 
-    /// Mean of 1/|f|^2 over the 600 angles 0, 0.1, ..., 59.9 degrees, f = [`Self::alpha_beta`].
-    pub fn mean_inverse_square(self) -> f64 {
-        let angles = (0..600).map(|step| f64::from(step).to_radians() / 10.0);
-        let inverses = angles.map(|theta| self.alpha_beta(theta).norm_squared().recip());
-        inverses.sum::<f64>() / 600.0
+    /// |f|^2 at the 600 angles 0, 0.1, ..., 59.9 degrees, f = [`Self::alpha_beta`].
+    pub fn squared_lengths(self) -> impl Iterator<Item = f64> {
+        (0..600)
+            .map(|step| f64::from(step).to_radians() / 10.0)
+            .map(move |theta| self.alpha_beta(theta).norm_squared())
     }
 
-    /// Part by which the EMF is longer than along the current parallel to it, over the angle in radians: |f|^2 times
-    /// the mean of 1/|f|^2, less 1.
-    pub fn stretch(self) -> impl Fn(f64) -> f64 {
-        let mean = self.mean_inverse_square();
-        move |theta| self.alpha_beta(theta).norm_squared() * mean - 1.0
+    /// Mean of 1/|f|^2 over [`Self::squared_lengths`].
+    pub fn mean_inverse_square(self) -> f64 {
+        self.squared_lengths().map(f64::recip).sum::<f64>() / 600.0
+    }
+
+    /// Part by which the EMF is longer than along the current parallel to it, at `theta` radians: |f|^2 times `mean`, the
+    /// mean of 1/|f|^2, less 1.
+    pub fn stretch(self, mean: f64, theta: f64) -> f64 {
+        self.alpha_beta(theta).norm_squared() * mean - 1.0
     }
 
     /// Amplitude-invariant Clarke transform of the three unit EMFs at `theta` radians.

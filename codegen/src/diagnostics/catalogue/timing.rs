@@ -50,10 +50,10 @@ pub fn period_too_long(
 }
 
 /// A step that may take longer than the control period.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct LongStep<'a> {
     /// The core as written.
-    pub given: &'a str,
+    pub given: String,
     /// The chip whose cycles were counted.
     pub chip: &'a str,
     /// Cycles of a step at most, in Rust and in C.

@@ -78,11 +78,6 @@ impl Origins {
         self.fields.contains_key(path)
     }
 
-    /// The field's value as written, if it was.
-    pub fn written(&self, path: &str) -> Option<&str> {
-        self.fields.get(path).map(|origin| origin.given.as_str())
-    }
-
     /// The field's value as written, or `default` marked as one.
     pub fn given(&self, path: &str, default: &str) -> String {
         self.fields.get(path).map_or_else(

@@ -8,7 +8,7 @@ use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;
 use crate::spec::words::{Words as _, words};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 words! {
     /// Source of the EMF.
@@ -78,6 +78,22 @@ pub struct SpeedLoop {
     pub inertia: f64,
     /// Greatest rate of the speed set-point in force, mechanical rad/s2; none: it is the set-point.
     pub acceleration_limit: Option<f64>,
+}
+
+/// Electrical turns in the time 1/f of a speed loop's bandwidth f below which the delay of a speed that is the mean of the
+/// last one makes it oscillate.
+const TURNS_IN_CONTROL: f64 = 4.0;
+
+impl SpeedLoop {
+    /// Least speed that the loop holds where it is the mean of the last electrical turn, rad/s.
+    pub fn least_speed(&self, pole_pairs: u32) -> f64 {
+        TAU * TURNS_IN_CONTROL * self.bandwidth / f64::from(pole_pairs)
+    }
+
+    /// Greatest bandwidth of a loop that holds a speed in rad/s so measured, hertz.
+    pub fn bandwidth_for(speed: f64, pole_pairs: u32) -> f64 {
+        speed.abs() * f64::from(pole_pairs) / (TAU * TURNS_IN_CONTROL)
+    }
 }
 
 /// Options that all controllers share.

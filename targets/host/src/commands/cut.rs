@@ -44,19 +44,10 @@ pub fn followed(drive: &Prepared, rpm: f64) -> (f64, Option<&'static str>) {
     }
 }
 
-/// Electrical turns in the time 1/f of a speed loop's bandwidth f below which its delay makes the speed oscillate.
-const TURNS: f64 = 4.0;
-
 /// Least speed that a speed loop holds, rpm, where the mean over an electrical turn of Hall edges tells it.
 pub fn least_held(spec: &Spec, speed: SpeedLoop) -> Option<f64> {
     let has_halls = !matches!(spec.inverter.rotor_sensing, RotorSensing::Angle(_));
-    let pole_pairs = f64::from(spec.motor.pole_pairs);
-    has_halls.then(|| 60.0 * TURNS * speed.bandwidth / pole_pairs)
-}
-
-/// Bandwidth of a speed loop that holds a speed in rpm, hertz.
-pub fn bandwidth_for(spec: &Spec, rpm: f64) -> f64 {
-    rpm.abs() * f64::from(spec.motor.pole_pairs) / (60.0 * TURNS)
+    has_halls.then(|| speed.least_speed(spec.motor.pole_pairs) * 60.0 / TAU)
 }
 
 fn of_current(

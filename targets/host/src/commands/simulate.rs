@@ -1,6 +1,6 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
-use super::cut::{bandwidth_for, cut_by, least_held};
+use super::cut::{cut_by, least_held};
 use super::ran::Ran;
 use crate::cli::{
     self, Failure, PlantArguments, RunArguments, note, paragraph, parse_rpm, parse_speed,
@@ -8,7 +8,7 @@ use crate::cli::{
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::{at_most, engineering};
-use hexagen_codegen::spec::{Reference, RotorSensing};
+use hexagen_codegen::spec::{Reference, RotorSensing, SpeedLoop};
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, LoadResponse, LoadStep, MOST_RECORDED, Measurement, RunOptions, SETTLED,
     Speed, Trip, measure,
@@ -308,7 +308,13 @@ fn of_speed(set: f64, outcome: &Outcome, drive: &Prepared) -> String {
     if let Some(least) = least.filter(|least| set.abs() < *least && set != 0.0) {
         return format!(
             "; below {least:.0} rpm the delay of the measured speed makes it oscillate: lower `speed_bandwidth` to {}, or take `rotor = \"angle\"`",
-            engineering(at_most(bandwidth_for(spec, set)), "Hz")
+            engineering(
+                at_most(SpeedLoop::bandwidth_for(
+                    set * TAU / 60.0,
+                    spec.motor.pole_pairs
+                )),
+                "Hz"
+            )
         );
     }
     let is_whole = outcome.torque_nm.abs() >= drive.reach() * (1.0 - 1e-9);

@@ -16,7 +16,7 @@ use super::hall::{GREATEST_CHANGE, HallClock, RISE, SMALL_CURRENT, across_at_sma
 use super::sector::{self, HallEvent};
 use super::supervision::{BusWatch, Limits, Observation, Period, Stop, Units};
 use super::trace::{Past, PhysicalState, Reach, Trace};
-use super::variant::{Variant, allowed_residual, emf_error_limit, emf_limit, stretches};
+use super::variant::{Variant, allowed_residual, emf_error_limit, emf_limit, stretch_mean};
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
@@ -76,8 +76,8 @@ pub struct Ideal {
     end: CommutationEnd,
     phase: DiscretePhase,
     shape: EmfShape,
-    /// Whether the EMF's error is corrected along the EMF itself.
-    stretches: bool,
+    /// Mean of 1/|f|^2 where the EMF's error is corrected along the EMF's own shape.
+    stretch_mean: Option<f64>,
     hall_sectors: [usize; 8],
     /// Of each sector, where it begins beyond its place, and its width, radian.
     sectors: [[f64; 2]; 6],
@@ -161,7 +161,7 @@ impl Ideal {
             end: spec.commutation_end().unwrap_or_default(),
             phase,
             shape: EmfShape::new(motor)?,
-            stretches: stretches(spec, &EmfShape::new(motor)?),
+            stretch_mean: stretch_mean(spec, EmfShape::new(motor)?),
             hall_sectors: sector::hall_sectors(motor),
             sectors: motor.sectors_beyond_places(),
             bus_watch: BusWatch::new(inverter),

@@ -246,16 +246,14 @@ pub fn flux_along(spec: &Spec, shape: &EmfShape) -> f64 {
     1.5 * motor.emf_constant.powi(2) / (motor.torque_constant * mean) / f64::from(motor.pole_pairs)
 }
 
-/// Whether the error of the observed EMF is corrected along the EMF itself (section 8).
-pub fn stretches(spec: &Spec, shape: &EmfShape) -> bool {
+/// Mean of 1/|f|^2 where the error of the observed EMF is corrected along the EMF's own shape (section 8).
+pub fn stretch_mean(spec: &Spec, shape: EmfShape) -> Option<f64> {
     let (motor, inverter) = (&spec.motor, &spec.inverter);
-    let mut squares: Vec<f64> = (0..600)
-        .map(|k| f64::from(k).to_radians() / 10.0)
-        .map(|theta| shape.alpha_beta(theta).norm_squared())
-        .collect();
-    squares.sort_by(f64::total_cmp);
+    let least = shape.squared_lengths().fold(f64::INFINITY, f64::min);
+    let most = shape.squared_lengths().fold(0.0, f64::max);
     let moved = motor.emf_constant * inverter.omega_max * inverter.t_s / motor.inductance;
-    (squares[599] / squares[0] - 1.0) * moved / inverter.max_current > 0.15
+    let is_stretched = (most / least - 1.0) * moved / inverter.max_current > 0.15;
+    is_stretched.then(|| shape.mean_inverse_square())
 }
 
 /// Residual allowed by the residual watch: volt always, volt per ampere of the set-point, volt per

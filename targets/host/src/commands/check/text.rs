@@ -159,13 +159,11 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
     )
 }
 
-/// ` (20 A of bus current)`, where that limit and not the voltage ends the whole current.
+/// What ends the whole current where that is the limit of the bus current and not the voltage, as ` (by 20 A of bus
+/// current)`.
 fn ended_by(judgement: &Judgement, drive: &Prepared) -> Option<String> {
     let limited = Envelope::of(&drive.spec);
-    let free = Envelope {
-        bus_current: None,
-        ..limited
-    };
+    let free = limited.without_bus_limit();
     let torque = judgement.torque_nm;
     let most = engineering(judgement.bus_current_limit_a?, "A");
     let is_limit = free.speed(torque)? > limited.speed(torque)? * LATER;

@@ -8,7 +8,7 @@ use super::tables::Table;
 use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
 use crate::model::hall::HallClock;
-use crate::model::variant::{Variant, emf_error_limit, emf_limit, reference_gain, stretches};
+use crate::model::variant::{Variant, emf_error_limit, emf_limit, reference_gain, stretch_mean};
 use crate::{
     Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Saturation, Spec, Switch,
 };
@@ -281,13 +281,14 @@ impl<W: Word> Constants<W> {
             (Table::default(), Shift::default())
         };
         let observes = variant.emf == Some(EmfSource::Observer);
-        let stretch = if observes && stretches(spec, &emf_shape) {
-            let bits = formats.frac_bits("stretch")?;
-            let segments = formats.segments("stretch")?;
-            let table = Table::new(segments, bits, emf_shape.stretch());
-            Some((table, Shift::new(bits)))
-        } else {
-            None
+        let stretch = match stretch_mean(spec, emf_shape).filter(|_| observes) {
+            Some(mean) => {
+                let bits = formats.frac_bits("stretch")?;
+                let stretch = |theta| emf_shape.stretch(mean, theta);
+                let table = Table::new(formats.segments("stretch")?, bits, stretch);
+                Some((table, Shift::new(bits)))
+            }
+            None => None,
         };
         let v_largest = bus.map_or(timer_period * two_v, |bus| bus.v_max);
         let motion = EmfMotion::new(spec)?;

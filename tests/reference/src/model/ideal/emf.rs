@@ -131,11 +131,8 @@ impl Ideal {
         [q, d]: [f64; 2],
         (theta, shape): (f64, &Vector2<f64>),
     ) -> Vector2<f64> {
-        let along = if self.stretches {
-            q + q * self.shape.stretch()(theta)
-        } else {
-            q
-        };
+        let stretch = |mean| self.shape.stretch(mean, theta);
+        let along = q + q * self.stretch_mean.map_or(0.0, stretch);
         let across = Vector2::new(-shape.y, shape.x) * 3_f64.sqrt();
         let most = 2.0 * self.emf_error_limit;
         let [e_a, e_b] = to_ab(&(e + shape * along + across * d));
