@@ -117,7 +117,7 @@ impl EmfShape {
         most / least - 1.0
     }
 
-    /// Mean of 1/s^2, s the length of the unit EMF in the plane, over the 600 [`angles`].
+    /// Mean of 1/s^2, s the length of the unit EMF in the plane, over 600 angles of a turn.
     pub fn mean_inverse_square(self) -> f64 {
         let inverses = self.squared_lengths().map(f64::recip);
         inverses.sum::<f64>() / f64::from(ANGLES)
