@@ -30,7 +30,7 @@ pub(super) fn list<'a>(times: impl Iterator<Item = &'a StepTime>) -> Vec<String>
     };
     let compiler = first.chip.compiler;
     let mut lines = vec![format!(
-        "Time of a step in Rust ({compiler}, `opt-level = 3`, `lto = \"fat\"`, without the feature `signals`), cycles with every wait state of the chip's memory and without credit for prefetch and caches, and their share of a control period. Any step includes start-up, trips, braking of a fast rotor and bridged Hall codes.{estimated}"
+        "Time of a step in Rust ({compiler}, `opt-level = 3`, `lto = \"fat\"`, without the feature `signals`), cycles with every wait state that the chip's memory takes at the clock and without credit for prefetch and caches, and their share of a control period. Any step includes start-up, trips, braking of a fast rotor and bridged Hall codes.{estimated}"
     )];
     lines.extend(times.into_iter().flat_map(item));
     lines
@@ -41,15 +41,20 @@ fn item(time: &StepTime) -> [String; 4] {
     let told = time.told();
     let errors = time
         .errors
-        .map(|errors| errors.map(|error| format!(" (+- {} %)", (100.0 * error).ceil())));
-    let [normal, control, control_cycles, any, any_cycles] = match errors {
-        Some(errors) => errors.into_array(),
-        None => Default::default(),
-    };
+        .map(|errors| errors.map(|error| format!(" (+- {} %)", (100.0 * error).ceil())))
+        .unwrap_or_default();
     let chip = time.chip;
     let clock = engineering(time.clock, "Hz");
     let at = if time.clock <= chip.clock {
-        format!("{}, {} at {clock}, {}", chip.name, chip.core, chip.assumed)
+        let waits = match chip.waits(time.clock) {
+            0 => "no wait states".to_owned(),
+            1 => "1 wait state".to_owned(),
+            waits => format!("{waits} wait states"),
+        };
+        format!(
+            "{}, {} at {clock}, {}, {waits}",
+            chip.name, chip.core, chip.assumed
+        )
     } else {
         let of_chip = engineering(chip.clock, "Hz");
         format!(
@@ -64,17 +69,24 @@ fn item(time: &StepTime) -> [String; 4] {
     };
     [
         format!("- {at}:"),
-        format!("  - in most steps {} instructions{normal};", told.normal),
         format!(
-            "  - in control {most}{} instructions{control}, {} cycles{control_cycles}, {} %;",
+            "  - in most steps {} instructions{};",
+            told.normal, errors.normal
+        ),
+        format!(
+            "  - in control {most}{} instructions{}, {} cycles{}, {} %;",
             told.control,
+            errors.control,
             told.control_cycles,
+            errors.control_cycles,
             time.percent_of_period(told.control_cycles),
         ),
         format!(
-            "  - in any step {most}{} instructions{any}, {} cycles{any_cycles}, {} %.",
+            "  - in any step {most}{} instructions{}, {} cycles{}, {} %.",
             told.any,
+            errors.any,
             told.any_cycles,
+            errors.any_cycles,
             time.percent_of_period(told.any_cycles),
         ),
     ]

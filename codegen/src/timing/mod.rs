@@ -14,17 +14,22 @@ use std::hash::Hasher;
 
 /// Figures of a step. Any step includes start-up, calibration, trips, braking of a fast rotor and
 /// bridged Hall codes; a step in control has none of them. Cycles are those of the chip, with the
-/// wait states of its memory and without credit for prefetch and caches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// wait states of its memory and without credit for prefetch and caches; core cycles are those of a
+/// memory without wait states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Times<T> {
     /// Instructions of most steps in control.
     pub normal: T,
     /// Instructions of the longest path in control.
     pub control: T,
+    /// Core cycles of a step in control at most.
+    pub control_core_cycles: T,
     /// Cycles of a step in control at most.
     pub control_cycles: T,
     /// Instructions of the longest path of any step.
     pub any: T,
+    /// Core cycles of any step at most.
+    pub any_core_cycles: T,
     /// Cycles of any step at most.
     pub any_cycles: T,
 }
@@ -38,8 +43,10 @@ pub struct Chip {
     pub core: &'static str,
     /// The chip's name.
     pub name: &'static str,
-    /// Clock of the core, hertz.
+    /// Highest clock of the core, hertz.
     pub clock: f64,
+    /// Highest clocks at which the memory takes 0, 1, 2 … wait states, hertz.
+    pub clocks_of_waits: &'static [f64],
     /// What the cycles assume.
     pub assumed: &'static str,
     /// The compiler whose code was counted.
@@ -84,6 +91,9 @@ pub fn weighed(weights: &Work, work: &Work) -> f64 {
 /// than 32 bits, other products, look-ups, divisions.
 pub type Work = [f64; 7];
 
+/// Number of figures of [`Times`].
+pub const FIGURES: usize = 7;
+
 /// Time of a controller's step on a chip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepTime {
@@ -95,7 +105,7 @@ pub struct StepTime {
     pub period: f64,
     /// Whether the specification names the core.
     pub is_named: bool,
-    /// Figures.
+    /// Figures, the cycles with the wait states of the clock.
     pub times: Times<u32>,
     /// Largest errors of the estimates; `None` for a drive that was counted.
     pub errors: Option<Times<f64>>,
@@ -103,12 +113,14 @@ pub struct StepTime {
 
 impl<T> Times<T> {
     /// All figures.
-    pub fn into_array(self) -> [T; 5] {
+    pub fn into_array(self) -> [T; FIGURES] {
         [
             self.normal,
             self.control,
+            self.control_core_cycles,
             self.control_cycles,
             self.any,
+            self.any_core_cycles,
             self.any_cycles,
         ]
     }
@@ -118,20 +130,32 @@ impl<T> Times<T> {
         Times {
             normal: (self.normal, others.normal),
             control: (self.control, others.control),
+            control_core_cycles: (self.control_core_cycles, others.control_core_cycles),
             control_cycles: (self.control_cycles, others.control_cycles),
             any: (self.any, others.any),
+            any_core_cycles: (self.any_core_cycles, others.any_core_cycles),
             any_cycles: (self.any_cycles, others.any_cycles),
         }
     }
 
     /// The same of other figures.
     pub fn map<U>(self, of: impl FnMut(T) -> U) -> Times<U> {
-        let [normal, control, control_cycles, any, any_cycles] = self.into_array().map(of);
+        let [
+            normal,
+            control,
+            control_core_cycles,
+            control_cycles,
+            any,
+            any_core_cycles,
+            any_cycles,
+        ] = self.into_array().map(of);
         Times {
             normal,
             control,
+            control_core_cycles,
             control_cycles,
             any,
+            any_core_cycles,
             any_cycles,
         }
     }
@@ -139,13 +163,43 @@ impl<T> Times<T> {
 
 impl<T: Copy> Times<T> {
     /// These figures, in the order of the fields.
-    pub const fn of([normal, control, control_cycles, any, any_cycles]: [T; 5]) -> Self {
+    pub const fn of(figures: [T; FIGURES]) -> Self {
+        let [
+            normal,
+            control,
+            control_core_cycles,
+            control_cycles,
+            any,
+            any_core_cycles,
+            any_cycles,
+        ] = figures;
         Self {
             normal,
             control,
+            control_core_cycles,
             control_cycles,
             any,
+            any_core_cycles,
             any_cycles,
+        }
+    }
+}
+
+impl Times<u32> {
+    /// These figures with a part of the wait states of the cycles, from 0 to 1.
+    ///
+    /// The cycles of a path grow by as much with each wait state, so that those of the longest path
+    /// are a convex function of the wait states: between two counts they lie below the line
+    /// through both.
+    fn with_waits(self, part: f64) -> Self {
+        let cycles = |core: u32, all: u32| {
+            let waits = f64::from(all.saturating_sub(core));
+            core + (part * waits).ceil() as u32
+        };
+        Self {
+            control_cycles: cycles(self.control_core_cycles, self.control_cycles),
+            any_cycles: cycles(self.any_core_cycles, self.any_cycles),
+            ..self
         }
     }
 }
@@ -231,12 +285,14 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
     chips
         .map(|chip| {
             let counted = chip.counted(digest);
+            let times = counted.unwrap_or_else(|| chip.estimated(&work));
+            let clock = asked.clock.unwrap_or(chip.clock);
             StepTime {
                 chip,
-                clock: asked.clock.unwrap_or(chip.clock),
+                clock,
                 period: asked.period,
                 is_named: asked.target.is_some(),
-                times: counted.unwrap_or_else(|| chip.estimated(&work)),
+                times: times.with_waits(chip.part_of_waits(clock)),
                 errors: counted.is_none().then(|| chip.errors(asked.learns_halls)),
             }
         })
@@ -268,13 +324,35 @@ impl Chip {
     }
 
     fn errors(&self, learns_halls: bool) -> Times<f64> {
-        self.estimates.map(|estimate| {
+        let errors = self.estimates.map(|estimate| {
             if learns_halls {
                 estimate.error
             } else {
                 estimate.error_without_learning
             }
-        })
+        });
+        // Between estimates with and without wait states the larger error holds.
+        Times {
+            control_cycles: errors.control_cycles.max(errors.control_core_cycles),
+            any_cycles: errors.any_cycles.max(errors.any_core_cycles),
+            ..errors
+        }
+    }
+
+    /// Wait states of the memory at a clock in hertz: all beyond the chip's highest.
+    pub fn waits(&self, clock: f64) -> usize {
+        let most = self.clocks_of_waits.len() - 1;
+        let fast_enough = self
+            .clocks_of_waits
+            .iter()
+            .position(|&highest| clock <= highest);
+        fast_enough.unwrap_or(most)
+    }
+
+    /// The same as a part of those at the chip's highest clock; 0 of a memory without any.
+    fn part_of_waits(&self, clock: f64) -> f64 {
+        let most = self.clocks_of_waits.len() - 1;
+        self.waits(clock) as f64 / most.max(1) as f64
     }
 
     fn estimated(&self, work: &Times<Work>) -> Times<u32> {
@@ -299,7 +377,7 @@ pub fn work(program: &Program) -> Times<Work> {
         ]
     };
     let (normal, worst) = (of(cost.normal), of(cost.worst));
-    Times::of([normal, worst, worst, worst, worst])
+    Times::of([normal, worst, worst, worst, worst, worst, worst])
 }
 
 /// Products of more than 32 bits on the longest path of a step.
@@ -324,7 +402,7 @@ mod tests {
 
     const WEIGHTS: Work = [100.0, 10.0, 2.0, 7.0, 3.0, 5.0, 50.0];
 
-    static COUNTED: [(u64, Times<u32>); 1] = [(17, Times::of([1, 2, 3, 4, 5]))];
+    static COUNTED: [(u64, Times<u32>); 1] = [(17, Times::of([1, 2, 3, 4, 5, 6, 7]))];
 
     const CHIP: Chip = Chip {
         target: "cortex_m0",
@@ -332,9 +410,10 @@ mod tests {
         assumed: "code in flash",
         name: "Chip",
         clock: 48e6,
+        clocks_of_waits: &[24e6, 36e6, 48e6],
         compiler: "rustc",
-        in_c: Times::of([2.0; 5]),
-        estimates: Times::of([Estimate::of(WEIGHTS, 0.2, 0.1); 5]),
+        in_c: Times::of([2.0; FIGURES]),
+        estimates: Times::of([Estimate::of(WEIGHTS, 0.2, 0.1); FIGURES]),
         counted: &COUNTED,
     };
 
@@ -348,7 +427,7 @@ mod tests {
 
     #[test]
     fn a_counted_drive_is_known_by_its_digest_alone() {
-        assert_eq!(CHIP.counted(17).map(|times| times.any), Some(4));
+        assert_eq!(CHIP.counted(17).map(|times| times.any), Some(5));
         assert_eq!(CHIP.counted(18), None);
     }
 
@@ -359,18 +438,45 @@ mod tests {
     }
 
     #[test]
+    fn cycles_have_the_wait_states_of_their_clock() {
+        let waits = [20e6, 24e6, 30e6, 48e6, 60e6].map(|clock| CHIP.waits(clock));
+        assert_eq!(waits, [0, 0, 1, 2, 2]);
+        let of = |clock| {
+            let times = Times::of([10, 20, 101, 204, 30, 300, 400]);
+            let times = times.with_waits(CHIP.part_of_waits(clock));
+            [times.control_cycles, times.any_cycles]
+        };
+        assert_eq!(of(24e6), [101, 300]);
+        assert_eq!(of(36e6), [153, 350], "half of 103 is rounded up");
+        assert_eq!(of(48e6), [204, 400]);
+        let without = Chip {
+            clocks_of_waits: &[48e6],
+            ..CHIP
+        };
+        assert_eq!(without.part_of_waits(48e6), 0.0);
+    }
+
+    #[test]
+    fn between_two_estimates_the_larger_error_holds() {
+        let mut chip = CHIP;
+        chip.estimates.control_core_cycles.error = 0.3;
+        let errors = chip.errors(true);
+        assert_eq!([errors.control_cycles, errors.any_cycles], [0.3, 0.2]);
+    }
+
+    #[test]
     fn estimates_are_told_with_two_digits() {
         let time = |errors| StepTime {
             chip: &CHIP,
             clock: 48e6,
             period: 50e-6,
             is_named: true,
-            times: Times::of([7, 96, 1234, 2345, 2449]),
+            times: Times::of([7, 96, 1111, 1234, 2345, 2222, 2449]),
             errors,
         };
         assert_eq!(
-            time(Some(Times::of([0.1; 5]))).told().into_array(),
-            [7, 96, 1200, 2300, 2400]
+            time(Some(Times::of([0.1; FIGURES]))).told().into_array(),
+            [7, 96, 1100, 1200, 2300, 2200, 2400]
         );
         assert_eq!(time(None).told().control_cycles, 1234);
         assert_eq!(time(None).percent_of_period(1201), 51.0);
@@ -384,8 +490,8 @@ mod tests {
         };
         assert!(!with(2400, None).is_too_long());
         assert!(with(2401, None).is_too_long());
-        assert!(with(2200, Some(Times::of([0.1; 5]))).is_too_long());
-        assert!(!with(2100, Some(Times::of([0.1; 5]))).is_too_long());
+        assert!(with(2200, Some(Times::of([0.1; FIGURES]))).is_too_long());
+        assert!(!with(2100, Some(Times::of([0.1; FIGURES]))).is_too_long());
         let in_c_only = [2401, 1201, 1200].map(|cycles| with(cycles, None).is_too_long_in_c_only());
         assert_eq!(in_c_only, [false, true, false], "twice the time in C");
     }

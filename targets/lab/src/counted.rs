@@ -41,10 +41,14 @@ pub struct Longest {
     pub instructions: u32,
     /// Instructions of a step that controls.
     pub instructions_in_control: u32,
-    /// Cycles of any step at most, on the chip that `cargo xtask cost` names.
+    /// Cycles of any step at most, on the chip that `cargo xtask cost` names, with all wait states of its memory.
     pub cycles: u32,
     /// Cycles of a step that controls.
     pub cycles_in_control: u32,
+    /// Cycles of any step at most, without wait states.
+    pub core_cycles: u32,
+    /// Cycles of a step that controls, without wait states.
+    pub core_cycles_in_control: u32,
 }
 
 impl Figures {
@@ -54,8 +58,10 @@ impl Figures {
         Some(Times {
             normal: self.normal,
             control: longest.instructions_in_control,
+            control_core_cycles: longest.core_cycles_in_control,
             control_cycles: longest.cycles_in_control,
             any: longest.instructions,
+            any_core_cycles: longest.core_cycles,
             any_cycles: longest.cycles,
         })
     }

@@ -5,7 +5,7 @@ use super::longest::chip;
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_codegen::timing::{self, Times, Work, counted, digest, weighed, work};
+use hexagen_codegen::timing::{self, FIGURES, Times, Work, counted, digest, weighed, work};
 use hexagen_lab::counted::Figures;
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
@@ -83,7 +83,7 @@ pub fn in_c(figures: &BTreeMap<String, Figures>) -> Times<f64> {
     let ratios = pairs.map(|pair| pair.map(|(c, rust)| f64::from(c) / f64::from(rust)));
     let most = |most: Times<f64>, ratio| most.zip(ratio).map(|(one, other)| one.max(other));
     // Rounded up to hundredths: what is told is no less than what was counted.
-    let most = ratios.fold(Times::of([1.0; 5]), most);
+    let most = ratios.fold(Times::of([1.0; FIGURES]), most);
     most.map(|ratio| (100.0 * ratio).ceil() / 100.0)
 }
 
@@ -150,6 +150,9 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
     {
         let in_c = times(in_c.map(|ratio| format!("{ratio:?}")));
         let chip = chip(*target);
+        let clocks = chip.clocks_of_waits.iter();
+        let clocks: Vec<String> = clocks.map(|clock| format!("{clock}e6")).collect();
+        let clocks = clocks.join(", ");
         let fits = fits(drives)?;
         let estimates = times(fits.map(|fit| {
             let weights = fit.weights.map(number).join(", ");
@@ -181,12 +184,13 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
             });
         let _ = write!(
             chips,
-            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, assumed: {:?}, compiler: {compiler:?}, \
+            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, clocks_of_waits: &[{}], assumed: {:?}, compiler: {compiler:?}, \
              in_c: {in_c}, estimates: {estimates}, counted: &[{counted}] }},",
             core(*target),
             name(*target),
             chip.name,
-            chip.clock,
+            chip.clock(),
+            clocks,
             chip.assumed,
         );
     }
@@ -253,13 +257,13 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
         };
         figures.map(point).into_array()
     });
-    let points: Vec<[Point; 5]> = points.collect();
+    let points: Vec<[Point; FIGURES]> = points.collect();
     let mut fits = vec![];
-    for figure in 0..5 {
+    for figure in 0..FIGURES {
         let points: Vec<Point> = points.iter().map(|point| point[figure]).collect();
         fits.push(fit(&points)?);
     }
-    let fits: [Fit; 5] = fits
+    let fits: [Fit; FIGURES] = fits
         .try_into()
         .map_err(|_| BenchError::Failed("a figure has no fit".to_owned()))?;
     Ok(Times::of(fits))

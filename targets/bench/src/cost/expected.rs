@@ -13,7 +13,7 @@ use std::path::PathBuf;
 pub struct Expected(pub Counted);
 
 /// The figures by name. Those that a step lacks are 0.
-fn named(figures: Figures) -> [(&'static str, u32); 10] {
+fn named(figures: Figures) -> [(&'static str, u32); 12] {
     let path = |of: fn(Longest) -> u32| figures.longest.map_or(0, of);
     [
         ("normal path", figures.normal),
@@ -31,6 +31,11 @@ fn named(figures: Figures) -> [(&'static str, u32); 10] {
         (
             "most cycles in control",
             path(|longest| longest.cycles_in_control),
+        ),
+        ("core cycles", path(|longest| longest.core_cycles)),
+        (
+            "core cycles in control",
+            path(|longest| longest.core_cycles_in_control),
         ),
     ]
 }
@@ -113,6 +118,8 @@ mod tests {
         instructions_in_control: 110,
         cycles: 600,
         cycles_in_control: 300,
+        core_cycles: 250,
+        core_cycles_in_control: 130,
     };
 
     #[test]

@@ -146,7 +146,9 @@ pub fn run(targets: &[Target], options: &Options) -> Result<(), BenchError> {
         let table = table(target, &rows);
         println!(
             "{name}, {compiler}; most cycles: {} at {} MHz, {}\n{table}",
-            chip.name, chip.clock, chip.assumed
+            chip.name,
+            chip.clock(),
+            chip.assumed
         );
         let figures = figures(&rows);
         let over_budget = print_budgets(target, &figures);

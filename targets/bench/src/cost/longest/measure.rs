@@ -17,8 +17,9 @@ use crate::targets::Target;
 pub struct Chip {
     /// Name.
     pub name: &'static str,
-    /// Clock, MHz.
-    pub clock: u32,
+    /// Highest clocks at which the memory with code and constants takes 0, 1, 2 … wait states, MHz; the last is
+    /// that of the chip.
+    pub clocks_of_waits: &'static [u32],
     /// What the figures assume.
     pub assumed: &'static str,
     /// A division.
@@ -27,8 +28,8 @@ pub struct Chip {
     refill: u32,
     /// What a conditional branch that is not taken takes beyond one cycle.
     not_taken: u32,
-    /// Wait states of the memory with code and constants.
-    waits: u32,
+    /// Whether the wait states are counted that the memory takes at the highest clock.
+    has_waits: bool,
     /// Bytes of a line of this memory.
     line: u32,
     /// Bytes by which code is moved from where the linker placed it.
@@ -49,16 +50,17 @@ pub fn chip(target: Target) -> Chip {
     match target {
         // Core: Cortex-M4 Technical Reference Manual, 100166_0001_00, Table 3-1: loads and stores
         // of n words 1 + n, SDIV and UDIV 2 to 12, a pipeline refill P of 1 to 3 cycles. Flash:
-        // RM0440, "Read access latency", four wait states above 136 MHz in range 1 boost; category
-        // 2 devices read 64 bits.
+        // RM0440, "Read access latency": the clocks of range 1 without boost, which allow less at
+        // each number of wait states than those with boost, and 170 MHz with it; category 2
+        // devices read 64 bits.
         Target::CortexM4 => Chip {
             name: "STM32G431",
-            clock: 170,
+            clocks_of_waits: &[30, 60, 90, 120, 170],
             assumed: "code in flash",
             division: 12,
             refill: 3,
             not_taken: 0,
-            waits: 4,
+            has_waits: true,
             line: 8,
             moved: 0,
         },
@@ -68,12 +70,12 @@ pub fn chip(target: Target) -> Chip {
         // organization", cells of 32 bits.
         Target::CortexM0 => Chip {
             name: "STM32F030",
-            clock: 48,
+            clocks_of_waits: &[24, 48],
             assumed: "multiplier of one cycle, code in flash",
             division: 0,
             refill: 3,
             not_taken: 0,
-            waits: 1,
+            has_waits: true,
             line: 4,
             moved: 0,
         },
@@ -83,12 +85,12 @@ pub fn chip(target: Target) -> Chip {
         // data and stack are used by nothing else.
         Target::Riscv32 => Chip {
             name: "RP2350",
-            clock: 150,
+            clocks_of_waits: &[150],
             assumed: "core Hazard3, code in a bank of SRAM of its own",
             division: 19,
             refill: 2,
             not_taken: 2,
-            waits: 0,
+            has_waits: true,
             line: 4,
             moved: 0,
         },
@@ -99,7 +101,7 @@ impl Measure {
     /// This measure for each place in a line where a function can begin.
     pub fn of_all_places(self) -> Vec<Self> {
         match self {
-            Self::Cycles(chip) if chip.waits > 0 => (0..chip.line)
+            Self::Cycles(chip) if chip.waits() > 0 => (0..chip.line)
                 .step_by(2)
                 .map(|moved| Self::Cycles(Chip { moved, ..chip }))
                 .collect(),
@@ -114,7 +116,9 @@ impl Measure {
         };
         let class = code.image.instruction(at).map(Instruction::class);
         match class {
-            Some(Class::Memory(words)) if code.loads_constants(at) => 1 + words * (1 + chip.waits),
+            Some(Class::Memory(words)) if code.loads_constants(at) => {
+                1 + words * (1 + chip.waits())
+            }
             Some(Class::Memory(words)) => 1 + words,
             Some(Class::Divide) => chip.division,
             Some(Class::Plain) | None => 1,
@@ -130,7 +134,7 @@ impl Measure {
             .last_line(code, next)
             .saturating_sub(chip.last_line(code, at));
         let is_branch = !flow.jumps.is_empty();
-        chip.waits * entered + if is_branch { chip.not_taken } else { 0 }
+        chip.waits() * entered + if is_branch { chip.not_taken } else { 0 }
     }
 
     /// The way to another instruction by a jump or a call.
@@ -140,19 +144,38 @@ impl Measure {
         };
         let first = (to + chip.moved) / chip.line;
         let entered = 1 + chip.last_line(code, to).saturating_sub(first);
-        chip.refill + chip.waits * (entered + 1)
+        chip.refill + chip.waits() * (entered + 1)
     }
 
     /// The way back to a caller, whose next instruction can be in two lines.
     pub fn of_return(self) -> u32 {
         match self {
             Self::Instructions => 0,
-            Self::Cycles(chip) => chip.refill + chip.waits * 3,
+            Self::Cycles(chip) => chip.refill + chip.waits() * 3,
         }
     }
 }
 
 impl Chip {
+    /// Highest clock, MHz.
+    pub fn clock(&self) -> u32 {
+        self.clocks_of_waits.last().copied().unwrap_or_default()
+    }
+
+    /// Wait states that are counted for each line.
+    fn waits(&self) -> u32 {
+        let most = self.clocks_of_waits.len() as u32 - 1;
+        if self.has_waits { most } else { 0 }
+    }
+
+    /// The chip at a clock at which its memory takes no wait states.
+    pub fn without_waits(self) -> Self {
+        Self {
+            has_waits: false,
+            ..self
+        }
+    }
+
     /// Number of the line with an instruction's last byte.
     fn last_line(&self, code: &Code, at: u32) -> u32 {
         let length = code.image.instruction(at).map_or(2, Instruction::length);

@@ -60,6 +60,7 @@ impl<'a> Program<'a> {
     /// What the search refuses.
     pub fn longest(&self, symbol: &str) -> Result<Longest, BenchError> {
         let cycles = Measure::Cycles(self.chip);
+        let core_cycles = Measure::Cycles(self.chip.without_waits());
         Ok(Longest {
             instructions: self.longest_without(symbol, &[], Measure::Instructions)?,
             instructions_in_control: self.longest_without(
@@ -69,6 +70,8 @@ impl<'a> Program<'a> {
             )?,
             cycles: self.longest_without(symbol, &[], cycles)?,
             cycles_in_control: self.longest_without(symbol, &AT_REST, cycles)?,
+            core_cycles: self.longest_without(symbol, &[], core_cycles)?,
+            core_cycles_in_control: self.longest_without(symbol, &AT_REST, core_cycles)?,
         })
     }
 

@@ -278,6 +278,8 @@ e:\tbx\tlr
         (7, 4)
     );
     assert!(longest.cycles > longest.cycles_in_control);
+    assert!(longest.core_cycles > longest.core_cycles_in_control);
+    assert!(longest.cycles > longest.core_cycles);
 }
 
 /// The check of the search against what was counted.
@@ -289,6 +291,8 @@ fn a_step_longer_than_the_longest_path_is_an_error() {
             instructions_in_control: 90,
             cycles: 1000,
             cycles_in_control: 200,
+            core_cycles: 500,
+            core_cycles_in_control: 100,
         };
         let checked = check("step_x", &longest, largest);
         checked.map_err(|error| error.to_string())
