@@ -7,7 +7,7 @@ use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust, readable_rust
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors, with_inertia};
-use hexagen_tests::options::{generate_toml, kinds};
+use hexagen_tests::options::{generate_toml, kind, kinds};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::ops::RangeInclusive;
 
@@ -336,6 +336,30 @@ fn check_layout(name: &str, tokens: &TokenStream) {
         Vec::<&str>::new(),
         "{name}"
     );
+}
+
+/// No leg is turned off, no EMF is filtered, and no reference has sectors to be moved: those options have no effect.
+#[test]
+fn data_sheets_leave_out_options_without_effect() {
+    const IDLE: [&str; 4] = [
+        "emf_filter",
+        "advance",
+        "commutation_threshold",
+        "commutation_timeout",
+    ];
+    for (choice, listed) in [
+        (&[][..], [false; 4]),
+        (&[("modulation", "pair")][..], [true; 4]),
+    ] {
+        let pdcc = kind("pdcc");
+        let toml = pdcc.drive_toml(&motor(PAPER_MOTOR), &pdcc.choice_of(choice), None);
+        let (_, generated) = generate_toml(&toml).expect("the paper's motor generates");
+        let sheet = emit_datasheet(&generated.graph, &generated.interface);
+        assert_eq!(
+            IDLE.map(|option| sheet.contains(&format!("| `{option}` | "))),
+            listed
+        );
+    }
 }
 
 /// Tables of vectors, of switching and of modulation are constants of every type, and so every data

@@ -90,7 +90,7 @@ fn envelope(sheet: &mut Sheet, interface: &Interface) {
 
 fn options(sheet: &mut Sheet, interface: &Interface) {
     sheet.heading(2, "Options of the controller");
-    sheet.line("In SI units, defaults included; an option not listed is off. Where a rule chose the value of one that was not stated, its reason stands there.\n");
+    sheet.line("In SI units and time-outs in control periods, defaults included; an option not listed is off or has no effect here. Where a rule chose the value of one that was not stated, its reason stands there.\n");
     sheet.table(["option", "value", "chosen by a rule because", "meaning"]);
     for option in &interface.options {
         sheet.row([

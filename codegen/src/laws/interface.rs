@@ -13,7 +13,8 @@ use crate::interface::{
 };
 use crate::scaling::Scaled;
 use crate::spec::{
-    self, CurrentSensing, Envelope, InverterSpec, Origins, RotorSensing, Rule, Spec, SpeedLoop,
+    self, ControllerSpec, CurrentSensing, EmfSource, Envelope, InverterSpec, Origins, Reference,
+    RotorSensing, Rule, Spec, SpeedLoop,
 };
 use crate::timing::{self, Asked};
 
@@ -161,7 +162,21 @@ fn options(spec: &Spec, origins: &Origins) -> Vec<OptionEntry> {
             is_choice: rule.is_choice(),
         }
     };
-    lines.map(entry).collect()
+    let effective = lines.filter(|(rule, _)| has_effect(rule.name, &spec.controller));
+    effective.map(entry).collect()
+}
+
+/// Whether an option changes anything of this controller: without a leg that is turned off no commutation is timed,
+/// and no other EMF source than the estimate is filtered.
+fn has_effect(option: &str, controller: &ControllerSpec) -> bool {
+    let common = controller.common();
+    let turns_off = controller.turns_off().is_some();
+    match option {
+        "commutation_threshold" | "commutation_timeout" => turns_off,
+        "advance" => turns_off || common.reference == Reference::QuasiSquare,
+        "emf_filter" => common.emf == EmfSource::Estimated,
+        _ => true,
+    }
 }
 
 fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<String> {
@@ -187,7 +202,7 @@ fn documentation(spec: &Spec, design: &LoopDesign, law: &Description) -> Vec<Str
         ]);
     }
     if let Some(speed) = spec.controller.common().speed {
-        doc.extend(speed_loop(speed, motor.pole_pairs));
+        doc.extend(speed_loop(speed, spec));
     }
     doc.extend(accuracy_notes());
     doc.extend(operation::wiring(spec));
@@ -265,7 +280,20 @@ fn current_sensors(spec: &Spec) -> String {
 }
 
 /// Documentation of the speed regulator.
-fn speed_loop(speed: SpeedLoop, pole_pairs: u32) -> [String; 8] {
+fn speed_loop(speed: SpeedLoop, spec: &Spec) -> [String; 8] {
+    let delay = match spec.angle_sensor() {
+        Some(sensor) => format!(
+            "it holds any speed, for it has the speed from two angles in a row through a filter of {}.",
+            engineering(
+                f64::from(spec.speed_filter(sensor)).exp2() * spec.inverter.t_s,
+                "s"
+            )
+        ),
+        None => format!(
+            "below {} its delay makes the speed oscillate around the set-point: it has the mean of the last electrical turn, and four turns take 1/f there.",
+            rpm(speed.least_speed(spec.motor.pole_pairs))
+        ),
+    };
     [
             String::new(),
             "# Speed loop".to_owned(),
@@ -277,11 +305,8 @@ fn speed_loop(speed: SpeedLoop, pole_pairs: u32) -> [String; 8] {
             ),
             "the bandwidth (four times the inertia: half the damping). `set_speed` sets the speed, `set_current` and `set_torque` the greatest".to_owned(),
             "current. At that limit the integral tracks it, so a long run-up ends without overshoot; a step that does not".to_owned(),
-            "reach it overshoots by 13.5 %, unless the set-point is a ramp. The speed is the mean of the last electrical turn: below".to_owned(),
-            format!(
-                "{}, four turns in the time 1/f, its delay makes the speed oscillate around the set-point.",
-                rpm(speed.least_speed(pole_pairs))
-            ),
+            "reach it overshoots by 13.5 %, unless the set-point is a ramp.".to_owned(),
+            format!("At low speed: {delay}"),
         ]
 }
 

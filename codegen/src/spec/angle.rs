@@ -54,6 +54,14 @@ impl AngleSensor {
     pub fn step(self) -> f64 {
         f64::from(self.turns.unsigned_abs()) * (32.0 - f64::from(self.bits)).exp2()
     }
+
+    /// Base-2 logarithm of the time constant, in periods, of the filter behind the differences of its angles, given
+    /// the electrical turns in a period at rated speed.
+    pub fn speed_filter(self, rated_turns: f64) -> u32 {
+        let allowed = STEP_SHARE * rated_turns * 32_f64.exp2();
+        let periods = (self.step() / allowed).max(1.0);
+        (periods.log2().ceil() as u32).clamp(1, SLOWEST_FILTER)
+    }
 }
 
 impl Spec {
@@ -72,9 +80,7 @@ impl Spec {
 
     /// Base-2 logarithm of the time constant, in periods, of the filter behind the differences of a sensor's angles.
     pub fn speed_filter(&self, sensor: AngleSensor) -> u32 {
-        let allowed = STEP_SHARE * self.turn_at(self.motor.rated_speed);
-        let periods = (sensor.step() / allowed).max(1.0);
-        (periods.log2().ceil() as u32).clamp(1, SLOWEST_FILTER)
+        sensor.speed_filter(self.turn_at(self.motor.rated_speed) / 32_f64.exp2())
     }
 
     /// Greatest difference of two angles in a row that is believed, 2^32 a turn: that at the maximum speed, or at the

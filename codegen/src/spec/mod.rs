@@ -28,6 +28,7 @@ mod model;
 mod normalised;
 mod option_texts;
 mod options;
+mod pwm_ripple;
 pub(crate) mod reader;
 mod rule;
 mod sampled_halls;

@@ -202,6 +202,27 @@ impl Times<u32> {
             ..self
         }
     }
+
+    /// Errors of [`Self::with_waits`] of estimates with these errors: those of the two counts of cycles, each by
+    /// its share.
+    fn errors_with_waits(self, part: f64, errors: Times<f64>) -> Times<f64> {
+        let mixed = |[core, all]: [u32; 2], [of_core, of_all]: [f64; 2]| {
+            let core = (1.0 - part) * f64::from(core);
+            let all = part * f64::from(all);
+            (core * of_core + all * of_all) / (core + all).max(1.0)
+        };
+        Times {
+            control_cycles: mixed(
+                [self.control_core_cycles, self.control_cycles],
+                [errors.control_core_cycles, errors.control_cycles],
+            ),
+            any_cycles: mixed(
+                [self.any_core_cycles, self.any_cycles],
+                [errors.any_core_cycles, errors.any_cycles],
+            ),
+            ..errors
+        }
+    }
 }
 
 impl StepTime {
@@ -287,13 +308,16 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
             let counted = chip.counted(digest);
             let times = counted.unwrap_or_else(|| chip.estimated(&work));
             let clock = asked.clock.unwrap_or(chip.clock);
+            let part = chip.part_of_waits(clock);
             StepTime {
                 chip,
                 clock,
                 period: asked.period,
                 is_named: asked.target.is_some(),
-                times: times.with_waits(chip.part_of_waits(clock)),
-                errors: counted.is_none().then(|| chip.errors(asked.learns_halls)),
+                times: times.with_waits(part),
+                errors: counted
+                    .is_none()
+                    .then(|| times.errors_with_waits(part, chip.errors(asked.learns_halls))),
             }
         })
         .collect()
@@ -324,19 +348,13 @@ impl Chip {
     }
 
     fn errors(&self, learns_halls: bool) -> Times<f64> {
-        let errors = self.estimates.map(|estimate| {
+        self.estimates.map(|estimate| {
             if learns_halls {
                 estimate.error
             } else {
                 estimate.error_without_learning
             }
-        });
-        // Between estimates with and without wait states the larger error holds.
-        Times {
-            control_cycles: errors.control_cycles.max(errors.control_core_cycles),
-            any_cycles: errors.any_cycles.max(errors.any_core_cycles),
-            ..errors
-        }
+        })
     }
 
     /// Wait states of the memory at a clock in hertz: all beyond the chip's highest.
@@ -457,11 +475,12 @@ mod tests {
     }
 
     #[test]
-    fn between_two_estimates_the_larger_error_holds() {
-        let mut chip = CHIP;
-        chip.estimates.control_core_cycles.error = 0.3;
-        let errors = chip.errors(true);
-        assert_eq!([errors.control_cycles, errors.any_cycles], [0.3, 0.2]);
+    fn between_two_estimates_each_error_counts_by_its_share() {
+        let times = Times::of([10, 20, 100, 300, 30, 100, 100]);
+        let errors = Times::of([0.0, 0.0, 0.4, 0.2, 0.0, 0.1, 0.1]);
+        let at = |part| times.errors_with_waits(part, errors).control_cycles;
+        assert_eq!([at(0.0), at(1.0)], [0.4, 0.2]);
+        assert!((at(0.5) - 0.25).abs() < 1e-12);
     }
 
     #[test]

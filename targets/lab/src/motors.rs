@@ -64,7 +64,7 @@ pub struct LibraryMotor {
     pub generates: bool,
     /// Why not.
     pub reason: Option<String>,
-    /// The default drive at each of [`SPEEDS`].
+    /// The default drive at each of [`SPEEDS`], the worst of both directions, motoring and braking.
     pub points: Vec<RatedPoint>,
     /// Whether it is right at all of them: torque within [`TORQUE`], ripple at most [`RIPPLE`].
     pub is_right: bool,
@@ -138,9 +138,27 @@ impl RatedPoint {
         places.map(run).collect()
     }
 
+    /// The worst of this and another point at the same speed: a trip, else the torque further from the demand and the
+    /// greater ripple.
+    fn worst(self, other: Self) -> Self {
+        if self.tripped.is_some() {
+            return self;
+        }
+        if other.tripped.is_some() {
+            return other;
+        }
+        let greater = |one: Option<f64>, other: Option<f64>| Some(one?.max(other?));
+        Self {
+            torque_pct: self.torque_pct.zip(other.torque_pct).map(further),
+            ripple_pct: greater(self.ripple_pct, other.ripple_pct),
+            saturated_pct: greater(self.saturated_pct, other.saturated_pct),
+            ..self
+        }
+    }
+
     /// Whether torque and ripple are right; `most`: greatest ripple, percent.
     pub fn is_right(&self, most: f64) -> bool {
-        let holds = |torque: f64| (torque - 100.0).abs() <= TORQUE;
+        let holds = |torque: f64| off(torque) <= TORQUE;
         self.torque_pct.is_some_and(holds) && self.ripple_pct.is_some_and(|ripple| ripple <= most)
     }
 
@@ -154,6 +172,16 @@ impl RatedPoint {
             Limit::ControlPeriod
         }
     }
+}
+
+/// Distance of a torque from the demand, both in percent of it.
+fn off(torque: f64) -> f64 {
+    (torque - 100.0).abs()
+}
+
+/// That of two torques which is further from the demand, percent.
+pub fn further((one, other): (f64, f64)) -> f64 {
+    if off(other) > off(one) { other } else { one }
 }
 
 /// A start on a free shaft.
@@ -245,8 +273,8 @@ pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, L
 }
 
 fn points(drive: &Prepared) -> Result<Vec<RatedPoint>, LabError> {
-    let points = SPEEDS.map(|share| RatedPoint::measure(drive, share as i32, 1.0));
-    points.into_iter().collect()
+    let of_quadrants = RatedPoint::of_quadrants(drive)?.into_iter();
+    Ok(of_quadrants.map(|(point, ..)| point).collect())
 }
 
 fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
@@ -282,6 +310,7 @@ fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
     let (spec, inverter) = (&drive.spec.motor, &drive.spec.inverter);
     let most = greatest_ripple(&drive.spec);
     let wrong = points.iter().find(|point| !point.is_right(most));
+    let of_speed = |points: &[RatedPoint]| points.iter().copied().reduce(RatedPoint::worst);
     LibraryMotor {
         description: Some(spec.description.clone()),
         pole_pairs: Some(spec.pole_pairs),
@@ -300,7 +329,10 @@ fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
         generates: true,
         is_right: !points.is_empty() && wrong.is_none(),
         limit: wrong.map(RatedPoint::limit),
-        points,
+        points: points
+            .chunks(QUADRANTS.len())
+            .filter_map(of_speed)
+            .collect(),
         ..none
     }
 }

@@ -54,6 +54,17 @@ pub(super) fn read(
         }
         planned || schema::misplaced("controller", field, errors)
     });
+    let rated_frequency = match (motor.pole_pairs, &motor.rated_speed) {
+        (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),
+        _ => None,
+    };
+    let speed_filter = match (motor.angle, rated_frequency, inverter.t_s) {
+        (Some(sensor), Some(frequency), Some(t_s)) => {
+            let periods = f64::from(sensor.speed_filter(frequency * t_s)).exp2();
+            Some(periods * t_s)
+        }
+        _ => None,
+    };
     let surroundings = Surroundings {
         t_s: inverter.t_s,
         v_bus: inverter.v_bus.as_ref().map(|given| given.si),
@@ -71,10 +82,8 @@ pub(super) fn read(
         torque_per_speed: motor
             .finish()
             .map(|motor| motor.torque_rating() / motor.rated_speed),
-        rated_frequency: match (motor.pole_pairs, &motor.rated_speed) {
-            (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),
-            _ => None,
-        },
+        rated_frequency,
+        speed_filter,
         adc_gain: inverter.adc.as_ref().map(|adc| adc.gain),
     };
     let controller = (kind.read)(&reader, &surroundings, errors);

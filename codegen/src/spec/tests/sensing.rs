@@ -204,3 +204,30 @@ fn currents_are_sampled_in_the_middle_of_pulses_that_the_dead_time_delays() {
          dead_time = \"600 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"0 us\"\nsampling_lead = \"100 ns\"";
     assert!((with_lines(shunts).sampling_delay(1) + 100e-9).abs() < 1e-15);
 }
+
+/// 10 bits a turn of the shaft are 64 periods of filter, 3.2 ms.
+#[test]
+fn the_filter_of_an_angle_sensor_limits_the_speed_loop() {
+    let check_with = |bits: u32, bandwidth: u32| {
+        let text = COMPLETE
+            .replace("rated_speed = \"2000 rpm\"", "rated_speed = \"8000 rpm\"")
+            .replace("bus_voltage = \"48 V\"", "bus_voltage = \"200 V\"")
+            .replace(
+                "[motor]\n",
+                &format!(
+                    "[motor]\ninertia = \"1e-4 kg m2\"\nrotor = \"angle\"\nangle_pole_pairs = 4\nangle_bits = {bits}\n"
+                ),
+            );
+        let text = format!("{text}speed_loop = \"on\"\nspeed_bandwidth = \"{bandwidth} Hz\"\n");
+        parse_toml(&text, "m.toml").and_then(|ast| check(&ast))
+    };
+    for (bits, bandwidth) in [(10, 31), (16, 66)] {
+        assert!(check_with(bits, bandwidth).is_ok(), "{bits} bits");
+        let text = check_with(bits, bandwidth + 1)
+            .expect_err("is too fast")
+            .to_string();
+        assert!(text.contains("HX0210]: `speed_bandwidth`"), "{text}");
+        let is_of_filter = text.contains("31.25 Hz, 0.1 over the time constant");
+        assert_eq!(is_of_filter, bits == 10, "{text}");
+    }
+}

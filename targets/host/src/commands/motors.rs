@@ -4,7 +4,7 @@ use crate::cli::{Bar, Failure, note, paragraph, print_json, print_table, print_t
 use clap::Args;
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::motors::{
-    COARSE, LibraryMotor, Limit, RIPPLE, RatedPoint, SPEEDS, TORQUE, library_at_rating,
+    COARSE, LibraryMotor, Limit, RIPPLE, RatedPoint, SPEEDS, TORQUE, further, library_at_rating,
 };
 use hexagen_lab::report::{Cell, Table, Tone};
 use hexagen_lab::text::significant;
@@ -48,12 +48,12 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.all {
         print_table(&all_columns(&motors))?;
         print_text(&paragraph(&format!(
-            "The default drive at rated torque and nominal bus voltage, by share of the rated speed. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Limited by: - where the drive is right ({right})."
+            "The default drive at rated torque and nominal bus voltage, by share of the rated speed: the worst of both directions, motoring and braking. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Limited by: - where the drive is right ({right})."
         )))?;
     } else {
         print_table(&table(&motors))?;
         print_text(&paragraph(&format!(
-            "Each with the default drive, at rated torque, simulated. Torque and ripple: the least and the greatest at 5, 25, 60 and 100 % of rated speed. Limited by: - where the drive is right ({right}). `hexagen check MOTOR` says more of one, `hexagen motors MOTOR` prints its file; --all has every column."
+            "Each with the default drive, at rated torque, simulated. Torque, the furthest from the demand, and ripple, the greatest, are those of 5, 25, 60 and 100 % of rated speed in both directions, motoring and braking. Limited by: - where the drive is right ({right}). `hexagen check MOTOR` says more of one, `hexagen motors MOTOR` prints its file; --all has every column."
         )))?;
     }
     for motor in &motors {
@@ -96,12 +96,10 @@ fn table(motors: &[LibraryMotor]) -> Table {
     for motor in motors {
         let power = motor.rated_torque_nm.zip(motor.rated_rpm);
         let power = power.map(|(torque, rpm)| torque * rpm * PI / 30.0);
-        let extreme = |of: fn(&RatedPoint) -> Option<f64>, which: fn(f64, f64) -> f64| {
-            let points = motor.points.iter().filter_map(of);
-            points
-                .reduce(which)
-                .map_or("-".to_owned(), |value| format!("{value:.1}"))
-        };
+        let torques = motor.points.iter().filter_map(|point| point.torque_pct);
+        let ripples = motor.points.iter().filter_map(|point| point.ripple_pct);
+        let percent =
+            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.1}"));
         let cells = [
             motor.name.clone(),
             cell(motor.v_bus_v, 1.0),
@@ -109,8 +107,8 @@ fn table(motors: &[LibraryMotor]) -> Table {
             cell(motor.rated_torque_nm, 1.0),
             cell(motor.rated_rpm, 1.0),
             cell(power, 1.0),
-            extreme(|point| point.torque_pct, f64::min),
-            extreme(|point| point.ripple_pct, f64::max),
+            percent(torques.reduce(|one, other| further((one, other)))),
+            percent(ripples.reduce(f64::max)),
         ];
         table.row(cells.map(Cell::from).into_iter().chain([limit(motor)]));
     }

@@ -275,7 +275,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.run.json {
         print_json(&outcome)?;
     } else {
-        print_table(&outcome, drive.spec.controller.common().reference)?;
+        print_table(&outcome, &drive)?;
     }
     Failure::of_trip(outcome.tripped)
 }
@@ -443,7 +443,7 @@ fn beyond_drive(
     })
 }
 
-fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
+fn print_table(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     let engine = outcome
         .ran
         .engine
@@ -452,7 +452,15 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
     // With a set speed the torque is no demand.
     let asked = match outcome.speed.and_then(|speed| speed.set_rpm) {
         Some(_) => format!("from {} rpm with at most {torque} Nm", outcome.rpm),
-        None => format!("{torque} Nm at {} rpm", outcome.rpm),
+        None => {
+            let reach = drive.reach();
+            let limited = if outcome.torque_nm.abs() > reach * BEYOND {
+                format!(", limited to {} Nm,", significant(reach, 4))
+            } else {
+                String::new()
+            };
+            format!("{torque} Nm{limited} at {} rpm", outcome.rpm)
+        }
     };
     print_text(&paragraph(&format!(
         "{}, {} ({}{engine}): {asked}",
@@ -485,7 +493,7 @@ fn print_table(outcome: &Outcome, reference: Reference) -> Result<(), Failure> {
     }
     let mut table = Table::listed(["figure of merit"], ["value", "unit"]);
     let figures = &outcome.figures;
-    for (name, value, unit) in figures.rows_of(reference) {
+    for (name, value, unit) in figures.rows_of(drive.spec.controller.common().reference) {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     }
     cli::print_table(&table)

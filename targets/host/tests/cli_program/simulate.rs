@@ -323,6 +323,9 @@ fn a_set_point_beyond_the_limit_is_told() {
     let said = at("5Nm");
     let result = said.json();
     assert!(said.stderr.contains("max_current"), "{}", said.stderr);
+    let table = run(["simulate", PAPER, "--rpm", "300", "--torque", "5Nm"]);
+    let header = "5.000 Nm, limited to 3.626 Nm, at 300 rpm";
+    assert!(table.stdout.contains(header), "{table:?}");
     let reached = number(&result, "mean_torque_nm");
     assert!(reached < 4.0, "{result}");
     // Tracking is judged by the current that the drive may ask for, not by the one that it may not.

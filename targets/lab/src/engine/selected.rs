@@ -171,9 +171,17 @@ impl SelectedMotor {
         let of_board = board.into_iter().flat_map(|file| &file.inverter.fields);
         let of_board = of_board.filter(|field| inverter.field(&field.name).is_none());
         let assumed = own.chain(of_board).filter(|field| field.assumed.is_some());
-        assumed
-            .map(|field| format!("`{}` {}", field.name, field.value))
-            .collect()
+        let assumed = assumed.map(|field| format!("`{}` {}", field.name, field.value));
+        assumed.chain(self.mounting_assumed()).collect()
+    }
+
+    /// How an angle sensor sits on the shaft where nobody stated it: no data sheet tells that.
+    fn mounting_assumed(&self) -> impl Iterator<Item = String> + '_ {
+        const MOUNTING: [[&str; 2]; 2] =
+            [["angle_offset", "0 deg"], ["angle_direction", "forward"]];
+        let of_angle = MOUNTING.into_iter().filter(|_| self.has_angle());
+        let missing = of_angle.filter(|[name, _]| self.ast.motor.field(name).is_none());
+        missing.map(|[name, value]| format!("`{name}` {value}"))
     }
 
     /// Whether the motor has an angle sensor in place of Hall sensors.

@@ -3,7 +3,7 @@
 use crate::commands::cut::{followed, least_held};
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{
-    CurrentSensing, Envelope, InverterSpec, MotorSpec, RotorSensing, SpeedLoop,
+    CurrentSensing, EmfShape, Envelope, InverterSpec, MotorSpec, RotorSensing, SpeedLoop,
 };
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::{Judgement, Point};
@@ -61,13 +61,13 @@ fn of_motor(motor: &MotorSpec) -> String {
             format!("{} kg m2", significant(inertia, 3))
         });
     format!(
-        "{} pole pair{} ({} magnets), star phase {}, {}; {}; {inertia}",
+        "{} pole pair{} ({} magnets), star phase {}, {}; {} per rated A; {inertia}",
         motor.pole_pairs,
         if motor.pole_pairs == 1 { "" } else { "s" },
         2 * motor.pole_pairs,
         engineering(motor.resistance, "ohm"),
         engineering(motor.inductance, "H"),
-        engineering(motor.rated_torque_constant(), "Nm/A"),
+        engineering(motor.rated_torque_constant(), "Nm"),
     )
 }
 
@@ -89,9 +89,12 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         [slow, rated] => format!("{slow} kHz, at rated speed {rated} kHz"),
         rates => format!("{} kHz", rates.join(", ")),
     };
+    let ripple = drive.spec.pwm_ripple().map_or(String::new(), |most| {
+        format!(" (ripple within a period up to {})", engineering(most, "A"))
+    });
     let speed = drive.left_out.map(|speed| of_speed_loop(speed, drive));
     format!(
-        "{}, {edges}; switches at {rates}{}",
+        "{}, {edges}; switches at {rates}{ripple}{}",
         drive.spec.controller.kind(),
         speed.unwrap_or_default(),
     )
@@ -189,11 +192,18 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
         String::new()
     };
     let rated = engineering(motor.rated_current, "A");
-    // A current that is no block gives the torque of the rated one with another peak.
-    let rated = if judgement.peak_a > MORE * motor.rated_current {
-        format!("by shape above rated {rated}")
-    } else {
-        format!("rated {rated} peak")
+    let rated = match motor.emf_shape {
+        _ if judgement.peak_a <= MORE * motor.rated_current => format!("rated {rated} peak"),
+        // A current that is no block gives the torque of the rated one with another peak.
+        EmfShape::Trapezoidal { .. } => format!("by its shape above the rated {rated}"),
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
+            let as_block = judgement.peak_a * 3.0_f64.sqrt() / 2.0;
+            if as_block <= MORE * motor.rated_current {
+                format!("a sine that heats no more than a block of the rated {rated}")
+            } else {
+                format!("a sine that heats more than a block of the rated {rated}")
+            }
+        }
     };
     let drawn = judgement.rated().and_then(|point| point.bus_current_a);
     let drawn = drawn.map_or(String::new(), |mean| {
