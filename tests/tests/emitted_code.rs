@@ -347,10 +347,9 @@ fn data_sheets_leave_out_options_without_effect() {
         "commutation_threshold",
         "commutation_timeout",
     ];
-    for (choice, listed) in [
-        (&[][..], [false; 4]),
-        (&[("modulation", "pair")][..], [true; 4]),
-    ] {
+    let three_phase = [("reference", "proportional"), ("emf", "observer")];
+    let pair = [("modulation", "pair")];
+    for (choice, listed) in [(&three_phase[..], [false; 4]), (&pair[..], [true; 4])] {
         let pdcc = kind("pdcc");
         let toml = pdcc.drive_toml(&motor(PAPER_MOTOR), &pdcc.choice_of(choice), None);
         let (_, generated) = generate_toml(&toml).expect("the paper's motor generates");
