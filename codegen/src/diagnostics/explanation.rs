@@ -556,6 +556,18 @@ impl Code {
                 "board = \"vesc-4\"",
                 "Measure the gain with a meter in a phase, or remove the field. A board with other sensors than the library's is described in a file of its own.",
             ),
+            Self::TripByBraking => say(
+                "A motor that brakes drives its current into the bus and raises its voltage. A full battery of lithium cells already stands 17 % above its nominal voltage, and a supply that takes no current rises at once. Where the drive trips so near, braking ends in OverVoltage with all legs off: a vehicle then rolls on.",
+                "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_max = \"54 V\"",
+                "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_max = \"54 V\"\nbraking_fade = \"3 V\"",
+                "State a braking_fade, which takes braking torque back below the trip level, or raise bus_max or over_voltage if switches and capacitors bear it. A return_current_limit holds the mean current alone.",
+            ),
+            Self::StallBeforeStart => say(
+                "From rest the greatest torque takes the square root of 2 angle inertia/torque to turn the rotor by an angle. If the stall time-out ends before that has turned it through a Hall sector, a start from the far edge of a sector trips with Stall, whatever the load.",
+                "inertia = \"24 kg cm2\"\nstall_timeout = \"10 ms\"",
+                "inertia = \"24 kg cm2\"\nstall_timeout = \"500 ms\"",
+                "Give the time-out some times the time of the fastest start: a load, friction and a smaller set-point make a start longer. 0 s turns stall detection off.",
+            ),
             Self::SampledHalls => say(
                 "Without a timer a Hall edge is seen at the next sample, up to a control period late. The rotor's angle jumps by what it turns in that time, and reference and EMF jump with it: the more so the less inductance the motor has. A timer that captures the edges tells when they came.",
                 "bus_voltage = \"100 V\"\nrated_speed = \"4000 rpm\"",

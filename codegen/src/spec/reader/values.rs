@@ -437,6 +437,7 @@ pub(crate) fn quantity_text(si: f64, dimension: Dimension) -> String {
         Dimension::Angle => format!("{} deg", significant(si)),
         Dimension::Ratio => percent(si),
         Dimension::CurrentPerCount => engineering(si, "A/count"),
+        Dimension::Sensitivity => engineering(si, "V/A"),
         Dimension::CurrentRate => engineering(si, "A/s"),
         Dimension::SpeedRate => format!("{}/s", rpm(si)),
         Dimension::Periods if si == 1.0 => "1 period".to_owned(),

@@ -169,8 +169,8 @@ const INVERTER: &[Line] = &[
     needed(&["adc_bits"], "Bits of the phase-current ADCs.", "12").or("12"),
     needed(
         &["adc_range", "adc_gain", "shunt"],
-        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB; or shunt with\n\
-         # amplifier_gain and adc_reference.",
+        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB, or\n\
+         # as 66 mV/A with adc_reference; or shunt with amplifier_gain and adc_reference.",
         "40 A",
     ),
     needed(
