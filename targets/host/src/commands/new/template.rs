@@ -64,13 +64,16 @@ impl Line {
     }
 }
 
+/// What states the magnets of the rotor.
+pub const POLES: &[&str] = &["poles", "pole_pairs"];
+
 /// Of a sensor on the shaft it is the motor's number.
 pub const ANGLE_POLE_PAIRS: &str = "angle_pole_pairs";
 
 const MOTOR: &[Line] = &[
     needed(&["description"], "Free text for the documentation.", "Rear hub drive").optional(),
     needed(
-        &["poles", "pole_pairs"],
+        POLES,
         "Magnet poles of the rotor; or pole_pairs, half as many.",
         "8",
     ),
@@ -186,6 +189,13 @@ const INVERTER: &[Line] = &[
     )
     .only_with("shunt", ""),
     needed(
+        &["adc_inverted"],
+        "on where counts fall with the current into the motor, as many shunts in the low legs make them; the bring-up\n\
+         # measures it.",
+        "on",
+    )
+    .optional(),
+    needed(
         &["current_sensing"],
         "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches;\n\
          # then also settling_time, aperture_time, conversion_time and sensed_phases).",
@@ -215,6 +225,13 @@ const INVERTER: &[Line] = &[
         "ab",
     )
     .asked()
+    .only_with("current_sensing", "low_side"),
+    needed(
+        &["current_adcs"],
+        "ADCs that sample different phases at once, each its share of the phases in turn; 1 where nothing is said.",
+        "2",
+    )
+    .optional()
     .only_with("current_sensing", "low_side"),
     needed(
         &["v_bus"],
