@@ -41,7 +41,7 @@ hexagen::controller! {
             adc_bits: 12,
             adc_range: 40 A,
             current_sensing: in_phase,
-            stall_timeout: 1 ms,
+            stall_timeout: 5 ms,
         },
         controller: pdcc { speed_loop: on, hall_capture: timer, emf: model, saturation: torque_priority },
     }

@@ -193,6 +193,10 @@ codes! {
     CurrentFarAboveRated = 621,
     /// A gain of the current sensors far from that of the board.
     GainUnlikeBoard = 622,
+    /// A bus voltage near the nominal one trips a drive whose braking torque nothing takes back.
+    TripByBraking = 623,
+    /// A stall time-out shorter than the motor's fastest start.
+    StallBeforeStart = 624,
     /// An internal error of the generator.
     Internal = 901,
 }

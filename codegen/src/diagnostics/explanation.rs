@@ -167,7 +167,7 @@ impl Code {
                 "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings of R and L differ by a factor of two, those of an EMF by up to three, so none is guessed. The current of a sinusoidal motor is printed as peak or rms, 1.41 times apart.",
                 "resistance = \"135 mohm\"",
                 "resistance = \"135 mohm per_phase\"",
-                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`. Servo motors state their current as `rms`; write `peak` for what block commutation carries, and where nothing is said.",
+                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`, and so are the torque and speed constants that Maxon prints: they hold for block commutation, also of a motor with a sinusoidal EMF (chapter 3 of the guide, \"Maxon's form\"). Servo motors state their current as `rms`; write `peak` for what block commutation carries, and where nothing is said.",
             ),
             Self::WrongBasis => say(
                 "The value cannot refer to what the word says.",
@@ -555,6 +555,18 @@ impl Code {
                 "board = \"vesc-4\"\nadc_range = \"40 A\"",
                 "board = \"vesc-4\"",
                 "Measure the gain with a meter in a phase, or remove the field. A board with other sensors than the library's is described in a file of its own.",
+            ),
+            Self::TripByBraking => say(
+                "A motor that brakes drives its current into the bus and raises its voltage. A full battery of lithium cells already stands 17 % above its nominal voltage, and a supply that takes no current rises at once. Where the drive trips so near, braking ends in OverVoltage with all legs off: a vehicle then rolls on.",
+                "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_max = \"54 V\"",
+                "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_max = \"54 V\"\nbraking_fade = \"3 V\"",
+                "State a braking_fade, which takes braking torque back below the trip level, or raise bus_max or over_voltage if switches and capacitors bear it. A return_current_limit holds the mean current alone.",
+            ),
+            Self::StallBeforeStart => say(
+                "From rest the greatest torque takes the square root of 2 angle inertia/torque to turn the rotor by an angle. If the stall time-out ends before that has turned it through a Hall sector, a start from the far edge of a sector trips with Stall, whatever the load.",
+                "inertia = \"24 kg cm2\"\nstall_timeout = \"10 ms\"",
+                "inertia = \"24 kg cm2\"\nstall_timeout = \"500 ms\"",
+                "Give the time-out some times the time of the fastest start: a load, friction and a smaller set-point make a start longer. 0 s turns stall detection off.",
             ),
             Self::SampledHalls => say(
                 "Without a timer a Hall edge is seen at the next sample, up to a control period late. The rotor's angle jumps by what it turns in that time, and reference and EMF jump with it: the more so the less inductance the motor has. A timer that captures the edges tells when they came.",

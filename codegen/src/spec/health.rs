@@ -37,6 +37,11 @@ impl Spec {
             max_current: self.inverter.max_current,
         }
     }
+
+    /// Greatest change of a phase current by one vector in a control period, at standstill, ampere.
+    pub fn vector_stride(&self) -> f64 {
+        self.drive().stride(1.0)
+    }
 }
 
 impl Drive<'_> {

@@ -109,7 +109,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("adc_range", &[D::Current], 0.01, 2e4, "40 A"),
     quantity(
         "adc_gain",
-        &[D::CurrentPerCount],
+        &[D::CurrentPerCount, D::Sensitivity],
         1e-7,
         100.0,
         "19.5 mA/count",

@@ -80,6 +80,25 @@ impl Unit {
         quantities::readings(&product.powers)
     }
 
+    /// The usual spelling of this unit with a smaller prefix, with which a value above some limits lies within them, SI.
+    pub(super) fn of_other_prefix(
+        &self,
+        value: f64,
+        [low, high]: [f64; 2],
+    ) -> Option<&'static str> {
+        let spellings = Self::spellings(self.dimension).iter().copied();
+        let apart = |symbol: &&str| {
+            let other = Self::from_symbol(symbol)?;
+            let thousands = (self.to_si(1.0) / other.to_si(1.0)).log10() / 3.0;
+            let is_prefix = (thousands - thousands.round()).abs() < 1e-6 && thousands > 0.5;
+            let is_within = (low..=high).contains(&other.to_si(value));
+            (is_prefix && is_within).then_some(thousands)
+        };
+        let fitting = spellings.filter_map(|symbol| Some((apart(&symbol)?, symbol)));
+        let nearest = fitting.min_by(|one, other| one.0.total_cmp(&other.0))?;
+        Some(nearest.1)
+    }
+
     /// The usual spellings of a quantity's units.
     pub fn spellings(dimension: Dimension) -> &'static [&'static str] {
         let known = KNOWN.iter().find(|(known, _)| *known == dimension);
@@ -99,19 +118,29 @@ impl Unit {
     }
 
     /// The known spelling of one of some quantities closest to an unknown one, if any is close: a
-    /// slip of one letter in three, or of upper and lower case.
+    /// slip of one letter in three, two that are exchanged, or of upper and lower case; or a prefix alone.
     pub fn nearest(symbol: &str, dimensions: &[Dimension]) -> Option<&'static str> {
         let letters = in_letters(symbol);
         let folded = letters.to_lowercase();
-        KNOWN
-            .iter()
-            .filter(|(dimension, _)| dimensions.contains(dimension))
-            .flat_map(|(_, spellings)| *spellings)
+        let known = || {
+            let of_dimensions = KNOWN
+                .iter()
+                .filter(|(dimension, _)| dimensions.contains(dimension));
+            of_dimensions.flat_map(|(_, spellings)| *spellings).copied()
+        };
+        let of_prefix = |whole: &&str| {
+            let base = whole.strip_prefix(&letters);
+            base.is_some_and(|base| known().any(|known| known == base))
+        };
+        if let Some(whole) = known().find(of_prefix) {
+            return Some(whole);
+        }
+        known()
             .map(|known| {
                 // A wrong case alone (`KHz`) is the closest of mistakes.
                 let cased = usize::from(*known != letters);
-                let distance = strsim::levenshtein(&known.to_lowercase(), &folded);
-                (2 * distance + cased, *known)
+                let distance = strsim::osa_distance(&known.to_lowercase(), &folded);
+                (2 * distance + cased, known)
             })
             .min()
             .filter(|(distance, _)| *distance <= letters.chars().count().min(3))

@@ -3,9 +3,11 @@
 //! Both front ends and the command line use this one reader; the macro's tokens are joined to text
 //! first. White space never matters.
 
+use super::SensedPhases;
 use super::ast::{Basis, Number, Value};
 use super::field_rule::FieldRule;
 use super::units::{Dimension, Unit, in_letters};
+use super::words::Words;
 use crate::diagnostics::{Diagnostic, Location, catalogue};
 use std::slice;
 
@@ -25,20 +27,36 @@ pub(super) fn parse_value(field: FieldRule, text: &str, at: &Location) -> Value 
         };
     }
     if field.name == "poles"
-        && let Some(poles) = poles_beside_slots(text)
+        && let Some([slots, poles]) = slots_and_poles(text)
     {
-        return plain_number(field, poles, at);
+        return if slots.is_multiple_of(PHASES) && slots > 0 {
+            plain_number(field, &poles.to_string(), at)
+        } else {
+            let error = catalogue::slots_of_three_phases(at, text.trim(), [slots, poles]);
+            Value::Malformed(Box::new(error))
+        };
     }
     read(field, text, at).unwrap_or_else(|error| Value::Malformed(Box::new(error)))
 }
 
-/// The poles of `12N14P`, as makers of outrunners write slots and poles.
-fn poles_beside_slots(text: &str) -> Option<&str> {
-    let (slots, poles) = text.trim().split_once(['N', 'n'])?;
-    let poles = poles.strip_suffix(['P', 'p'])?;
-    let is_number =
-        |digits: &str| !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
-    (is_number(slots) && is_number(poles)).then_some(poles)
+/// Phases of a motor: each has as many teeth of its stator.
+const PHASES: u32 = 3;
+
+/// The slots and the poles of `12N14P` or `14P12N`, as makers of outrunners write them.
+fn slots_and_poles(text: &str) -> Option<[u32; 2]> {
+    let upper = text.trim().to_uppercase();
+    let number = |digits: &str| {
+        let is_number = digits.bytes().all(|digit| digit.is_ascii_digit());
+        digits.parse().ok().filter(|_| is_number)
+    };
+    let (slots, poles) = match upper.strip_suffix('P') {
+        Some(slots_first) => slots_first.split_once('N')?,
+        None => {
+            let (poles, slots) = upper.strip_suffix('N')?.split_once('P')?;
+            (slots, poles)
+        }
+    };
+    Some([number(slots)?, number(poles)?])
 }
 
 /// Free text in one line. Texts become comments of emitted code, so characters that compilers
@@ -123,7 +141,48 @@ fn malformed(field: FieldRule, text: &str, at: &Location) -> Diagnostic {
     if text.starts_with('"') && matches!(at, Location::Macro(_)) {
         return catalogue::quoted(at, field.name, text);
     }
-    catalogue::malformed_value(at, field.name, text, &field.examples(&[]))
+    let phases = (field.name == "sensed_phases").then(|| phases_of_list(text));
+    let examples = phases
+        .flatten()
+        .map_or_else(|| field.examples(&[]), |word| vec![word.to_owned()]);
+    catalogue::malformed_value(at, field.name, text, &examples)
+}
+
+/// The word of `sensed_phases` for phases in a list: `abc` of `a, b, c`.
+fn phases_of_list(text: &str) -> Option<&'static str> {
+    let is_named = |word: &&str| {
+        let other = text
+            .chars()
+            .filter(|c| c.is_alphanumeric())
+            .any(|c| !word.contains(c));
+        !other && word.chars().all(|phase| text.contains(phase))
+    };
+    SensedPhases::WORDS
+        .iter()
+        .map(|known| known.word)
+        .find(is_named)
+}
+
+/// The value with a point in place of a decimal comma, and without the comma if that may part thousands.
+fn without_comma(digits: &str, lexemes: &[Lexeme]) -> Option<Vec<String>> {
+    let [Lexeme::Symbol(','), Lexeme::Number(fraction), unit @ ..] = lexemes else {
+        return None;
+    };
+    let is_whole = |digits: &str| digits.bytes().all(|digit| digit.is_ascii_digit());
+    if !is_whole(digits.trim_start_matches('-')) || !is_whole(fraction) {
+        return None;
+    }
+    let unit = spelt(unit);
+    let value = |point: &str| {
+        format!("{digits}{point}{fraction} {unit}")
+            .trim_end()
+            .to_owned()
+    };
+    let mut values = vec![value(".")];
+    if fraction.len() == 3 && digits != "0" {
+        values.push(value(""));
+    }
+    Some(values)
 }
 
 /// Whether a number is of another base than ten, such as `0x1F`.
@@ -210,6 +269,9 @@ fn read_unit(
     let given = |lexemes: &[Lexeme]| format!("{digits} {}", spelt(lexemes));
     if let Some(meant) = voltage_over_speed(field, digits, lexemes) {
         return Err(catalogue::voltage_at_speed(at, field.name, text, &meant));
+    }
+    if let Some(values) = without_comma(digits, lexemes) {
+        return Err(catalogue::decimal_comma(at, field.name, text, &values));
     }
     if let Some(signs) = stray_signs(lexemes) {
         let examples = field.examples(&named(lexemes));

@@ -11,11 +11,12 @@
 use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use crate::envelope::envelope_on;
+use crate::judgement::Judgement;
 use crate::period::long_period;
 use crate::plant::PlantParams;
 use crate::robustness::measured;
 use crate::{LabError, Progress};
-use hexagen_codegen::diagnostics::Code;
+use hexagen_codegen::diagnostics::{Code, engineering};
 use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
 use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
@@ -164,6 +165,10 @@ pub struct Advice {
     pub recommended: Option<usize>,
     /// Why that one.
     pub reason: String,
+    /// Ripple of that one, in the words of `check`, where `check` tells it.
+    pub ripples: Option<String>,
+    /// Why variants of whole vectors ripple far more, if some do.
+    pub whole_vectors: Option<String>,
     /// Options of the motor's file that stay whatever the controller, with their values.
     pub kept: Vec<(String, String)>,
     /// Options of the motor's file that the other variants do without.
@@ -222,6 +227,8 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         tried: try_all(&prepared, progress)?,
         recommended: None,
         reason: String::new(),
+        ripples: None,
+        whole_vectors: None,
         kept: kept(motor)
             .map(|field| (field.name.clone(), field.value.to_string()))
             .collect(),
@@ -237,6 +244,10 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         advice.tried[k].limit_pct = limit;
     }
     advice.recommend(&mut left);
+    advice.whole_vectors = whole_vectors(&prepared, &advice.tried);
+    if let Some(Ok(drive)) = advice.recommended.map(|k| prepared[k].1.as_ref()) {
+        advice.ripples = Judgement::of(drive)?.ripples(&drive.spec);
+    }
     if advice.tried.first().is_some_and(|default| default.overruns) {
         advice.reason.push_str(
             "; a step of the default drive may take longer than the control period: a lower `f_pwm`, or `pwm_per_control = 2`, \
@@ -249,6 +260,36 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         let _ = write!(advice.reason, "; {long}");
     }
     Ok(advice)
+}
+
+/// Ripple of a variant of whole vectors from which on its reason is told, percent.
+const ROUGH: f64 = 20.0;
+
+/// Why the variants that hold one vector in a control period ripple; none where none does much.
+fn whole_vectors(drives: &[Drive], tried: &[Tried]) -> Option<String> {
+    let of_drive = |(_, drive): &Drive| {
+        let spec = &drive.as_ref().ok()?.spec;
+        (!spec.controller.modulates()).then(|| (spec.vector_stride(), spec.motor.rated_current))
+    };
+    let is_rough =
+        |tried: &Tried| Worst::of(&tried.nominal).is_some_and(|worst| worst.ripple_pct >= ROUGH);
+    let rough = drives
+        .iter()
+        .zip(tried)
+        .filter(|(_, tried)| is_rough(tried));
+    let rough: Vec<(&str, (f64, f64))> = rough
+        .filter_map(|(drive, tried)| Some((tried.variant, of_drive(drive)?)))
+        .collect();
+    let (_, (stride, rated)) = *rough.first()?;
+    let names: Vec<&str> = rough.iter().map(|(name, _)| *name).collect();
+    Some(format!(
+        "Held for a control period, one vector changes a current by up to {}, {:.0} % of the rated one. So {} ripple, and their \
+         mean torque may be off by a part of that step; control at a higher frequency lessens both. Where rated speed takes most \
+         of the bus, the commutations of their currents cost torque besides.",
+        engineering(stride, "A"),
+        100.0 * stride / rated,
+        names.join(", "),
+    ))
 }
 
 /// What the default drive of a motor lacks of the best variant; none where it trips.
@@ -578,7 +619,9 @@ fn code_of(error: &LabError) -> Option<Code> {
 fn works(tried: &Tried) -> Option<String> {
     if tried.refused.is_some() {
         let code = tried.refused_by.as_ref();
-        return Some(code.map_or("refused".to_owned(), |code| format!("refused: {code}")));
+        return Some(code.map_or("not possible".to_owned(), |code| {
+            format!("not possible: {code}")
+        }));
     }
     if tried.overruns {
         return Some("a step may take longer than the control period".to_owned());
@@ -635,6 +678,8 @@ mod tests {
             ],
             recommended: None,
             reason: String::new(),
+            ripples: None,
+            whole_vectors: None,
             kept: Vec::new(),
             left_out: Vec::new(),
         };

@@ -295,7 +295,7 @@ impl Judgement {
                 .filter(|point| !point.is_braked())
                 .filter_map(|point| point.lost_on_bus(returned_most)),
         );
-        buts.extend(self.rippling(&drive.spec).map(|(_, text)| text));
+        buts.extend(self.ripples(&drive.spec));
         buts.extend(long_period(&drive.spec));
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
@@ -332,6 +332,11 @@ impl Judgement {
                 most.floor(),
             )
         })
+    }
+
+    /// What is told of the greatest ripple on the nominal bus, if it is worth a word.
+    pub fn ripples(&self, spec: &Spec) -> Option<String> {
+        self.rippling(spec).map(|(_, text)| text)
     }
 
     /// The greatest ripple on the nominal bus, percent and in words, if it is more than that of a default drive with

@@ -9,9 +9,9 @@ use crate::diagnostics::{
 fn widen(range: &Part) -> String {
     match range.field {
         "shunt" => "take a smaller `shunt` or `amplifier_gain`".to_owned(),
-        "adc_gain" => "take sensors of a larger `adc_gain`".to_owned(),
+        "adc_gain" => "take less sensitive sensors (more ampere to a count of `adc_gain`)".to_owned(),
         "amplifier_swing" => {
-            "raise `amplifier_swing` if the amplifier's output follows farther, or take a smaller `shunt` or `amplifier_gain`"
+            "raise `amplifier_swing` if the amplifier's output follows farther, or take a smaller `shunt` or `amplifier_gain`, or less sensitive sensors"
                 .to_owned()
         }
         field => format!("widen `{field}`"),
@@ -22,7 +22,9 @@ fn widen(range: &Part) -> String {
 fn narrow(range: &Part) -> String {
     match range.field {
         "shunt" => "take a larger `shunt` or `amplifier_gain`".to_owned(),
-        "adc_gain" => "take sensors of a smaller `adc_gain`".to_owned(),
+        "adc_gain" => {
+            "take more sensitive sensors (less ampere to a count of `adc_gain`)".to_owned()
+        }
         field => format!("narrow `{field}`"),
     }
 }

@@ -429,6 +429,65 @@ pub fn sampled_halls(period: &Part, degrees: f64, ripple: f64) -> Diagnostic {
     )
 }
 
+/// A trip by a bus voltage near the nominal one, with a motor that brakes and no fade; in volt: nominal and trip level.
+/// `limit`: a limit of the returned current.
+pub fn trip_by_braking(
+    level: &Part,
+    limit: Option<&Part>,
+    [nominal, trip]: [f64; 2],
+) -> Diagnostic {
+    let held = if limit.is_some() {
+        " (`return_current_limit` holds the mean of the current, not the voltage)"
+    } else {
+        ""
+    };
+    let warning = Diagnostic::new(
+        Code::TripByBraking,
+        &level.location,
+        format!(
+            "`{}`: {} is less than 20 % above the nominal {}: a full battery is near it, a supply that takes no current back rises to it{held}, and braking then trips the drive with `OverVoltage`, all legs off; state a `braking_fade`, such as {}, or raise `{}` if switches and capacitors bear it",
+            level.field,
+            level.given,
+            engineering(nominal, "V"),
+            engineering((trip - nominal) / 2.0, "V"),
+            level.field,
+        ),
+    );
+    with_parts(warning, limit.as_slice())
+}
+
+/// A stall time-out within which no start ends.
+#[derive(Clone, Debug)]
+pub struct StallOfStart {
+    /// The time-out.
+    pub timeout: Part,
+    /// Inertia, kg m2.
+    pub inertia: f64,
+    /// Torque of the largest set-point, Nm.
+    pub torque: f64,
+    /// Time of a sector from rest, second.
+    pub start: f64,
+}
+
+/// Several times the fastest start leave room for a load and a smaller set-point.
+const STARTS: f64 = 10.0;
+
+/// A stall time-out shorter than the motor's fastest start.
+pub fn stall_before_start(stall: &StallOfStart) -> Diagnostic {
+    Diagnostic::new(
+        Code::StallBeforeStart,
+        &stall.timeout.location,
+        format!(
+            "`stall_timeout`: {} is shorter than the {} in which the whole {} turns the `inertia` of {} kg m2 from rest through a Hall sector without load, so that a start may trip with `Stall`; give some times that, as {}, or 0 s for no stall detection",
+            stall.timeout.given,
+            engineering(stall.start, "s"),
+            engineering(stall.torque, "Nm"),
+            significant(stall.inertia),
+            engineering(at_least(STARTS * stall.start), "s"),
+        ),
+    )
+}
+
 /// Two constants that state their bases and do not agree; `ratio`: the one that is taken over the other; `changes`:
 /// readings with which they would.
 pub fn constants_apart([taken, other]: [&Part; 2], ratio: f64, changes: &[String]) -> Diagnostic {
@@ -530,12 +589,13 @@ pub fn mean_for_peak([stated, other]: [&Part; 2], peak: f64, true_peak: f64) -> 
             Code::MeanForPeak,
             &stated.location,
             format!(
-                "`{}`: {} and {} are one number, as those of a sinusoidal motor are where both are means over block commutation; such a reading, `block_mean`, means a line-to-line peak of {} in place of {}; {LOOK_UP}",
+                "`{}`: {} and {} are one number, as those of a sinusoidal motor are where both are means over block commutation; `{}` is taken as it stands, a line-to-line peak of {}, which as `block_mean` would be one of {}; {LOOK_UP}",
                 stated.field,
                 stated.given,
                 other.quoted(),
-                engineering(true_peak, "V/(rad/s)"),
+                stated.field,
                 engineering(peak, "V/(rad/s)"),
+                engineering(true_peak, "V/(rad/s)"),
             ),
         ),
         &[other],

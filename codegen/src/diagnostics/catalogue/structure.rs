@@ -283,6 +283,7 @@ pub fn needed_field(
 ) -> Diagnostic {
     let what = match name {
         "hall_timer_clock" => ", the clock of a timer that captures the edges",
+        "adc_reference" => ", the voltage of the converter's full range",
         _ => "",
     };
     Diagnostic::new(

@@ -16,6 +16,22 @@ pub fn malformed_value(at: &Location, field: &str, given: &str, examples: &[Stri
     )
 }
 
+/// A comma in a number; `values`: what may be meant.
+pub fn decimal_comma(at: &Location, field: &str, given: &str, values: &[String]) -> Diagnostic {
+    let values: Vec<String> = values
+        .iter()
+        .map(|value| written(at, field, value))
+        .collect();
+    Diagnostic::new(
+        Code::MalformedValue,
+        at,
+        format!(
+            "`{field}`: {given} has a comma in its number; write a decimal point, and nothing between thousands: {}",
+            list(&values, "or")
+        ),
+    )
+}
+
 /// Misplaced signs in a value.
 pub fn stray_signs(
     at: &Location,
@@ -262,11 +278,11 @@ pub fn unknown_word(
     field: &str,
     given: &str,
     known: &[&str],
-    kin: Option<&str>,
+    advice: Option<String>,
 ) -> Diagnostic {
-    let advice = kin.map_or_else(
+    let advice = advice.map_or_else(
         || did_you_mean(given, known),
-        |kin| format!("; nothing is counted on it, the nearest is `{kin}`, with your `core_clock`"),
+        |advice| format!("; {advice}"),
     );
     Diagnostic::new(
         Code::UnknownWord,
@@ -329,11 +345,21 @@ pub fn not_above_zero(at: &Location, field: &str, given: &str, examples: &[Strin
 }
 
 /// A value outside its plausible or possible limits.
-pub fn out_of_range(at: &Location, field: &str, given: &str, low: &str, high: &str) -> Diagnostic {
+/// `meant`: the same number with another prefix, if that lies within.
+pub fn out_of_range(
+    at: &Location,
+    field: &str,
+    given: &str,
+    [low, high]: [&str; 2],
+    meant: Option<&str>,
+) -> Diagnostic {
+    let meant = meant.map_or_else(String::new, |meant| format!(": did you mean `{meant}`?"));
     Diagnostic::new(
         Code::OutOfRange,
         at,
-        format!("`{field}`: {given} lies outside {low} to {high}; check the number and its unit"),
+        format!(
+            "`{field}`: {given} lies outside {low} to {high}; check the number and its unit{meant}"
+        ),
     )
 }
 
@@ -382,6 +408,27 @@ pub fn odd_poles(at: &Location, given: &str, poles: u32) -> Diagnostic {
             "`poles`: {given} is odd, and poles come in pairs; give the magnets' poles, as {} or {}, or `pole_pairs: {poles}` if pairs are meant",
             poles - 1,
             poles + 1,
+        ),
+    )
+}
+
+/// Slots of which no three phases have equally many.
+pub fn slots_of_three_phases(at: &Location, given: &str, [slots, poles]: [u32; 2]) -> Diagnostic {
+    let is_exchanged = poles > 0 && poles.is_multiple_of(3) && slots.is_multiple_of(2);
+    let exchanged = if is_exchanged && slots > 0 {
+        let other = format!("{poles}N{slots}P");
+        format!(
+            " {} if slots and poles are exchanged, or",
+            list(&[written(at, "poles", &other)], "or")
+        )
+    } else {
+        String::new()
+    };
+    Diagnostic::new(
+        Code::OutOfRange,
+        at,
+        format!(
+            "`poles`: {given} says {slots} slots (N) and {poles} poles (P), and the three phases of a motor share its slots equally, so that 3 divides them; write{exchanged} the number of poles alone"
         ),
     )
 }

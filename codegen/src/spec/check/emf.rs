@@ -363,7 +363,12 @@ fn push_forms(
         refers && means
     };
     let is_double = given.basis.contains(&Basis::PeakToPeak);
-    let mut forms: Vec<(String, String)> = [PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean]
+    let mut readings = [PhasePeak, LinePeak, PhaseRms, LineRms, BlockMean];
+    if given.dimension == Some(Dimension::SpeedConstant) {
+        // The usual basis of a KV stands first.
+        readings.rotate_right(1);
+    }
+    let mut forms: Vec<(String, String)> = readings
         .into_iter()
         .filter(fits)
         .map(|reading| form(given, reading, is_double, shape))

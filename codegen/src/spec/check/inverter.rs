@@ -3,6 +3,7 @@
 use super::sensing::{self, Sensing};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Location, at_least, at_most, engineering};
+use crate::spec::ast::{Field, Value};
 use crate::spec::model::period_within;
 use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
@@ -395,80 +396,179 @@ struct Gains {
     swing: Option<Part>,
 }
 
+/// The current at the end of the converter's range.
+const RANGE: &str = "adc_range";
+
+/// Ampere per count, or volt per ampere of the sensors.
+const GAIN: &str = "adc_gain";
+
+/// The converter's reference.
+const REFERENCE: &str = "adc_reference";
+
 /// Fields that say together what a count is worth.
-const SHUNT: [&str; 3] = ["shunt", "amplifier_gain", "adc_reference"];
+const SHUNT: [&str; 3] = ["shunt", "amplifier_gain", REFERENCE];
 
 /// How far the amplifier's output follows the current.
 const SWING: &str = "amplifier_swing";
 
-/// The gains: from the range, as stated, or from shunt, amplifier and reference of a converter of so many counts.
+/// The gains of a converter of so many counts: from the range, as stated, from the sensors' sensitivity and the
+/// converter's reference, or from shunt, amplifier and reference.
 fn read_gains(
     reader: &Reader,
     phases: SensedPhases,
     counts: f64,
     errors: &mut Collector,
 ) -> Option<Gains> {
-    let all = |gain: f64| vec![gain; phases.phases().len()];
-    let swing = reader.plain_quantity(errors, SWING);
-    let Some(shunt) = SHUNT.iter().find_map(|name| reader.field(name)) else {
-        if let Some(swing) = &swing {
-            let (at, given) = (&swing.part.location, &swing.part.given);
-            errors.push(catalogue::needless_field(at, SWING, given, "shunt", None));
-        }
-        if ["adc_range", "adc_gain"]
-            .iter()
-            .all(|name| reader.field(name).is_none())
-        {
-            reader.require_any_of(errors, &["adc_range", "adc_gain", SHUNT[0]]);
-        } else {
-            reader.require_one_of(errors, ["adc_range", "adc_gain"]);
-        }
-        let range = reader.plain_quantity(errors, "adc_range");
-        let stated = reader.field("adc_gain").and_then(|_| {
-            sensing::of_each_phase(reader, "adc_gain", phases, errors, |one, errors| {
-                one.plain_quantity(errors, "adc_gain").map(|given| given.si)
-            })
-        });
-        let (each, part) = match range {
-            Some(range) => (all(2.0 * range.si / counts), range.part),
-            None => (stated?, reader.part("adc_gain", String::new)),
-        };
-        return Some(Gains {
-            each,
-            linear: f64::INFINITY,
-            part,
-            swing: None,
-        });
-    };
-    for name in ["adc_range", "adc_gain"] {
-        if let Some(field) = reader.field(name) {
-            let (at, other) = (&shunt.name_location, &field.name_location);
-            errors.push(catalogue::exclusive_fields(at, &shunt.name, other, name));
-        }
+    let is_sensitivity = states_sensitivity(reader);
+    // A sensitivity takes the reference, too.
+    let mut shunt = SHUNT.iter().filter_map(|name| reader.field(name));
+    match shunt.find(|field| !is_sensitivity || field.name != REFERENCE) {
+        Some(shunt) => gains_of_shunt(reader, shunt, phases, counts, errors),
+        None if is_sensitivity => gains_of_sensors(reader, phases, counts, errors),
+        None => stated_gains(reader, phases, counts, errors),
     }
+}
+
+/// Whether `adc_gain` is the voltage per ampere of the sensors.
+fn states_sensitivity(reader: &Reader) -> bool {
+    let is_sensitivity = |value: &Value| match value {
+        Value::Number(number) => {
+            let unit = number.unit.as_ref();
+            unit.is_some_and(|unit| unit.dimension == Dimension::Sensitivity)
+        }
+        _ => false,
+    };
+    reader.field(GAIN).is_some_and(|field| match &field.value {
+        Value::List(values) => values.iter().any(is_sensitivity),
+        value => is_sensitivity(value),
+    })
+}
+
+/// From the range, or ampere per count.
+fn stated_gains(
+    reader: &Reader,
+    phases: SensedPhases,
+    counts: f64,
+    errors: &mut Collector,
+) -> Option<Gains> {
+    if let Some(swing) = reader.plain_quantity(errors, SWING) {
+        let (at, given) = (&swing.part.location, &swing.part.given);
+        errors.push(catalogue::needless_field(at, SWING, given, "shunt", None));
+    }
+    if [RANGE, GAIN]
+        .iter()
+        .all(|name| reader.field(name).is_none())
+    {
+        reader.require_any_of(errors, &[RANGE, GAIN, SHUNT[0]]);
+    } else {
+        reader.require_one_of(errors, [RANGE, GAIN]);
+    }
+    let range = reader.plain_quantity(errors, RANGE);
+    let stated = reader.field(GAIN).and_then(|_| {
+        sensing::of_each_phase(reader, GAIN, phases, errors, |one, errors| {
+            one.plain_quantity(errors, GAIN).map(|given| given.si)
+        })
+    });
+    let (each, part) = match range {
+        Some(range) => {
+            let gain = 2.0 * range.si / counts;
+            (vec![gain; phases.phases().len()], range.part)
+        }
+        None => (stated?, reader.part(GAIN, String::new)),
+    };
+    Some(Gains {
+        each,
+        linear: f64::INFINITY,
+        part,
+        swing: None,
+    })
+}
+
+/// From the voltage per ampere of sensors with an output of their own; a list may state some in ampere per count.
+fn gains_of_sensors(
+    reader: &Reader,
+    phases: SensedPhases,
+    counts: f64,
+    errors: &mut Collector,
+) -> Option<Gains> {
+    let gain = reader.field(GAIN)?;
+    refuse_beside(reader, gain, &[RANGE], errors);
+    if reader.field(REFERENCE).is_none() {
+        need(&gain.location, GAIN, REFERENCE, errors);
+    }
+    let swing = reader.plain_quantity(errors, SWING);
+    let reference = reader.plain_quantity(errors, REFERENCE);
+    let sensors = sensing::of_each_phase(reader, GAIN, phases, errors, |one, errors| {
+        let given = one.plain_quantity(errors, GAIN)?;
+        Some((given.si, given.dimension))
+    })?;
+    let volt = reference?.si / counts;
+    let each: Vec<f64> = sensors
+        .into_iter()
+        .map(|(si, dimension)| match dimension {
+            Some(Dimension::Sensitivity) => volt / si,
+            _ => si,
+        })
+        .collect();
+    let least = each.iter().copied().fold(f64::INFINITY, f64::min);
+    Some(Gains {
+        linear: swing
+            .as_ref()
+            .map_or(f64::INFINITY, |swing| swing.si * least / volt),
+        each,
+        part: reader.part(GAIN, String::new),
+        swing: swing.map(|swing| swing.part),
+    })
+}
+
+/// From shunt, amplifier and reference, of which `shunt` is the first that is given.
+fn gains_of_shunt(
+    reader: &Reader,
+    shunt: &Field,
+    phases: SensedPhases,
+    counts: f64,
+    errors: &mut Collector,
+) -> Option<Gains> {
+    refuse_beside(reader, shunt, &[RANGE, GAIN], errors);
     for name in SHUNT {
         if reader.field(name).is_none() {
-            let (at, example) = (&shunt.location, schema::field(name).example());
-            errors.push(catalogue::needed_field(
-                at,
-                &shunt.name,
-                ["inverter", name, example],
-            ));
+            need(&shunt.location, &shunt.name, name, errors);
         }
     }
-    let [ohm, volt] = ["shunt", "adc_reference"].map(|name| reader.plain_quantity(errors, name));
-    let amplified = reader.plain(errors, "amplifier_gain");
+    let swing = reader.plain_quantity(errors, SWING);
+    let [ohm, volt] = [SHUNT[0], REFERENCE].map(|name| reader.plain_quantity(errors, name));
+    let amplified = reader.plain(errors, SHUNT[1]);
     let (ohm, volt, amplified) = (ohm?, volt?, amplified?);
     // Volt at the converter per ampere.
     let sensitivity = ohm.si * amplified.si;
     Some(Gains {
-        each: all(volt.si / (counts * sensitivity)),
+        each: vec![volt.si / (counts * sensitivity); phases.phases().len()],
         linear: swing
             .as_ref()
             .map_or(f64::INFINITY, |swing| swing.si / sensitivity),
         part: ohm.part,
         swing: swing.map(|swing| swing.part),
     })
+}
+
+/// Reports fields that say what `field` says.
+fn refuse_beside(reader: &Reader, field: &Field, names: &[&str], errors: &mut Collector) {
+    for name in names {
+        if let Some(other) = reader.field(name) {
+            let (at, other) = (&field.name_location, &other.name_location);
+            errors.push(catalogue::exclusive_fields(at, &field.name, other, name));
+        }
+    }
+}
+
+/// Reports the field `name` of the inverter that another one needs.
+fn need(at: &Location, field: &str, name: &str, errors: &mut Collector) {
+    let example = schema::field(name).example();
+    errors.push(catalogue::needed_field(
+        at,
+        field,
+        ["inverter", name, example],
+    ));
 }
 
 /// Default offset tolerance of an ADC of `full` counts, counts.

@@ -17,6 +17,7 @@ mod origins;
 mod relations;
 mod sensing;
 mod sensing_window;
+mod trips;
 
 pub use origins::{Origin, Origins};
 
@@ -94,13 +95,14 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
 
     let period = inverter.period.as_ref().map(|period| &period.part);
     match (motor.finish(), finished, controller) {
-        (Some(motor), Some(inverter), Some(controller)) => {
+        (Some(whole_motor), Some(inverter), Some(controller)) => {
             let spec = Spec {
                 name: ast.name.text.clone(),
-                motor,
+                motor: whole_motor,
                 inverter,
                 controller,
             };
+            trips::check(&inverter_reader, &motor, &spec, &mut warnings);
             if let Some(period) = period {
                 check_sampled_halls(period, &spec, &mut warnings);
             }

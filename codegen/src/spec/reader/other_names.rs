@@ -5,7 +5,7 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 16] = [
+const NAMES: [(&str, &[&str]); 17] = [
     ("kind", &["type"]),
     (
         "poles",
@@ -73,6 +73,16 @@ const NAMES: [(&str, &[&str]); 16] = [
             "regen_current_limit",
             "max_charge_current",
             "charge_current_limit",
+        ],
+    ),
+    (
+        "adc_gain",
+        &[
+            "gain",
+            "sensitivity",
+            "current_gain",
+            "current_sensitivity",
+            "sensor_sensitivity",
         ],
     ),
     ("rated_torque", &["nominal_torque", "continuous_torque"]),
@@ -156,10 +166,35 @@ const CORES: [(&str, &[&str]); 2] = [
     ),
 ];
 
-/// The word nearest in meaning to one that has no meaning here.
-pub(super) fn kin(given: &str) -> Option<&'static str> {
-    let row = CORES.iter().find(|(_, others)| others.contains(&given))?;
-    Some(row.0)
+/// Sensors of the rotor's angle.
+const ANGLE_SENSORS: [&str; 8] = [
+    "encoder",
+    "absolute_encoder",
+    "magnetic_encoder",
+    "incremental_encoder",
+    "abz",
+    "resolver",
+    "sin_cos",
+    "sincos",
+];
+
+/// What to write for a word without meaning here, a clause, if the field takes its kin.
+pub(super) fn kin(given: &str, known: &[&str]) -> Option<String> {
+    if ANGLE_SENSORS.contains(&given) && known.contains(&"angle") {
+        return Some(
+            "of such a sensor the program passes the angle: write `angle`, with `angle_pole_pairs`"
+                .to_owned(),
+        );
+    }
+    if ["a", "b", "c"].contains(&given) && known.contains(&"abc") {
+        return Some("write the phases as one word".to_owned());
+    }
+    let (core, _) = CORES
+        .iter()
+        .find(|(core, others)| others.contains(&given) && known.contains(core))?;
+    Some(format!(
+        "nothing is counted on it, the nearest is `{core}`, with your `core_clock`"
+    ))
 }
 
 /// The word that another one stands for.
@@ -200,6 +235,9 @@ pub(super) fn is_unused(name: &str) -> bool {
 pub(super) fn remedy(meant: &str, field: &Field) -> String {
     if meant == "bus_adc_range" {
         return "write `bus_adc_range`, the bus voltage at the converter's last count: its reference times (R_high + R_low)/R_low".to_owned();
+    }
+    if meant == "adc_gain" {
+        return "write `adc_gain` for what a count is worth (A/count, or mV/A with `adc_reference`), or `amplifier_gain` for the number by which an amplifier multiplies the voltage of the `shunt`".to_owned();
     }
     let Value::Number(number) = &field.value else {
         return format!("did you mean `{meant}`?");

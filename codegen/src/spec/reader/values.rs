@@ -80,7 +80,7 @@ impl<'a> Reader<'a> {
             let error = if low > 0.0 && bounded {
                 catalogue::not_positive(at, name, text, &low_text, &high_text)
             } else if bounded {
-                catalogue::out_of_range(at, name, text, &low_text, &high_text)
+                catalogue::out_of_range(at, name, text, [&low_text, &high_text], None)
             } else {
                 catalogue::not_above_zero(
                     at,
@@ -96,7 +96,20 @@ impl<'a> Reader<'a> {
         if !inside {
             // Only a number with a unit can have a wrong one.
             let error = match given.dimension {
-                Some(_) => catalogue::out_of_range(at, name, text, &low_text, &high_text),
+                Some(_) => {
+                    let unit = given.number.unit.as_ref();
+                    let other =
+                        unit.and_then(|unit| unit.of_other_prefix(given.number.value, [low, high]));
+                    let words: Vec<&str> = given.basis.iter().map(|basis| basis.word()).collect();
+                    let meant = other.map(|other| {
+                        [&given.number.digits, other, &words.join(" ")]
+                            .join(" ")
+                            .trim_end()
+                            .to_owned()
+                    });
+                    let limits = [low_text.as_str(), high_text.as_str()];
+                    catalogue::out_of_range(at, name, text, limits, meant.as_deref())
+                }
                 None => catalogue::out_of_limits(at, name, text, &low_text, &high_text),
             };
             errors.push(error);
@@ -335,7 +348,7 @@ impl<'a> Reader<'a> {
                 name,
                 &given,
                 &known,
-                other_names::kin(&plain).filter(|kin| known.contains(kin)),
+                other_names::kin(&plain, &known),
             ));
         }
         found
@@ -437,6 +450,7 @@ pub(crate) fn quantity_text(si: f64, dimension: Dimension) -> String {
         Dimension::Angle => format!("{} deg", significant(si)),
         Dimension::Ratio => percent(si),
         Dimension::CurrentPerCount => engineering(si, "A/count"),
+        Dimension::Sensitivity => engineering(si, "V/A"),
         Dimension::CurrentRate => engineering(si, "A/s"),
         Dimension::SpeedRate => format!("{}/s", rpm(si)),
         Dimension::Periods if si == 1.0 => "1 period".to_owned(),

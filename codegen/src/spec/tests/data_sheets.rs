@@ -111,7 +111,12 @@ fn slots_and_poles_say_the_pole_pairs() {
     assert_eq!(of_file(&text).motor.pole_pairs, 7);
     let call = changed(COMPLETE_CALL, "-pole_pairs; +motor poles: 12N14P");
     assert_eq!(of_call(&call).motor.pole_pairs, 7);
-    for wrong in ["12N", "N14P", "12N14", "12N14P2", "xN14P"] {
+    // In the other order.
+    let call = changed(COMPLETE_CALL, "-pole_pairs; +motor poles: 20P18N");
+    assert_eq!(of_call(&call).motor.pole_pairs, 10);
+    for wrong in [
+        "12N", "N14P", "12N14", "12N14P2", "xN14P", "14P", "14PN", "0N14P",
+    ] {
         let text = COMPLETE.replace("pole_pairs = 4", &format!("poles = \"{wrong}\""));
         let read = parse_toml(&text, "motor.toml").and_then(|ast| check(&ast));
         assert!(read.is_err(), "{wrong}");

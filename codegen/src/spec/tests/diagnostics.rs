@@ -148,7 +148,7 @@ fn joined(before: &[&str], entry: Option<&str>, after: &[&str]) -> String {
 }
 
 /// What a macro call makes, errors or warnings.
-fn found_in_call(text: &str) -> Vec<Diagnostic> {
+pub(super) fn found_in_call(text: &str) -> Vec<Diagnostic> {
     let tokens = text.parse::<TokenStream>().expect("lexes");
     found(parse_macro(tokens).and_then(|input| input.load(Path::new("nowhere"), &mut vec![])))
 }

@@ -1,6 +1,7 @@
 //! The inverter's numbers: periods of whole counts, ticks with fractions, trip levels, and limits
 //! that hold.
 
+use super::diagnostics::{COMPLETE_CALL, changed, found_in_call};
 use crate::diagnostics::Code;
 use crate::pipeline::{generate, warnings};
 use crate::spec::{BusCurrents, BusSource, Origins, RotorSensing, Spec, check, parse_toml};
@@ -642,4 +643,27 @@ fn a_thousandth_of_a_value_is_one_error() {
     );
     let told = told("\"20 A peak\"", "\"100 mA\"");
     assert!(told.contains("or give at least 195.4 mA"), "{told}");
+}
+
+/// A trip that braking does not reach, a fade before it, and a start within the time-out.
+#[test]
+fn trips_out_of_reach_are_no_warnings() {
+    const BUS: &str =
+        "+inverter v_bus: measured; +inverter bus_adc_bits: 12; +inverter bus_adc_range: 80 V";
+    const HEAVY: &str = "+motor inertia: 24 kg cm2";
+    for delta in [
+        // 130 % of the nominal voltage.
+        format!("{BUS}; +inverter return_current_limit: 4 A"),
+        format!("{BUS}; +inverter bus_max: 57 V; +inverter braking_fade: 4.5 V"),
+        format!("{BUS}; +inverter bus_max: 57 V; +inverter over_voltage: 0 V"),
+        // A fixed bus has no voltage to fade by.
+        "+inverter return_current_limit: 4 A".to_owned(),
+        // A sector of 15 degrees takes 19.5 ms with 3.3 Nm.
+        format!("{HEAVY}; +inverter stall_timeout: 20 ms"),
+        format!("{HEAVY}; +inverter stall_timeout: 0 s"),
+        "+inverter stall_timeout: 1 ms".to_owned(),
+    ] {
+        let found = found_in_call(&changed(COMPLETE_CALL, &delta));
+        assert!(found.is_empty(), "{delta}: {found:?}");
+    }
 }

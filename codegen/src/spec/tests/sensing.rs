@@ -114,6 +114,46 @@ fn shunt_amplifier_and_reference_make_a_gain() {
     assert!((inverter.adc_gain / gain - 1.0).abs() < 1e-12);
 }
 
+/// An ACS712 of 30 A has 66 mV/A; 3.3 V at 12 bits are 0.8057 mV a count.
+#[test]
+fn sensitivity_and_reference_make_a_gain() {
+    let sensor = "adc_gain = \"66 mV/A\"\nadc_reference = \"3.3 V\"";
+    let gain = 3.3 / 4096.0 / 0.066;
+    let inverter = with_lines(sensor);
+    assert!((inverter.adc_gain / gain - 1.0).abs() < 1e-12);
+    let unlike = "adc_gain = [\"66 mV/A\", \"0.068 V/A\"]\nadc_reference = \"3.3 V\"";
+    let sensors = with_lines(unlike).sensors();
+    assert!((sensors[1].gain / gain - 66.0 / 68.0).abs() < 1e-12);
+    let swing = format!("{sensor}\namplifier_swing = \"1.5 V\"\nmax_current = \"15 A\"");
+    assert!((22.7..22.8).contains(&with_lines(&swing).shown_current()));
+    let told = |lines: &str| {
+        let text = COMPLETE.replace("adc_range = \"40 A\"", lines);
+        let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+        checked.expect_err("is in error").to_string()
+    };
+    let text = told("adc_gain = \"66 mV/A\"");
+    assert!(
+        text.contains("`adc_gain` needs the field `adc_reference`"),
+        "{text}"
+    );
+    // A gain per count leaves nothing to say to the reference.
+    let text = told("adc_gain = \"20 mA/count\"\nadc_reference = \"3.3 V\"");
+    assert!(
+        text.contains("`adc_gain`") && text.contains("`adc_reference`"),
+        "{text}"
+    );
+    let text = told(&format!(
+        "{sensor}\nshunt = \"1 mohm\"\namplifier_gain = 20"
+    ));
+    assert!(
+        text.contains("`shunt`") && text.contains("`adc_gain`"),
+        "{text}"
+    );
+    // Ten times the sensitivity shows too small a current.
+    let text = told("adc_gain = \"660 mV/A\"\nadc_reference = \"3.3 V\"");
+    assert!(text.contains("less sensitive sensors"), "{text}");
+}
+
 #[test]
 fn sensors_of_a_macro_call_and_of_a_file_are_alike() {
     let file = with_lines(

@@ -37,6 +37,8 @@ pub enum Dimension {
     Ratio,
     /// Ampere per ADC count.
     CurrentPerCount,
+    /// SI: V/A, of a current sensor.
+    Sensitivity,
     /// SI: A/s.
     CurrentRate,
     /// Speed per time.
@@ -65,6 +67,7 @@ impl Dimension {
             Self::Angle => "an angle",
             Self::Ratio => "a ratio",
             Self::CurrentPerCount => "a current per ADC count",
+            Self::Sensitivity => "a voltage per current",
             Self::CurrentRate => "a current per time",
             Self::SpeedRate => "a speed per time",
             Self::Periods => "a number of control periods",
@@ -195,6 +198,11 @@ const QUANTITIES: &[(Powers, D, [f64; 2])] = &[
         [1.0, 1.0],
     ),
     (
+        powers(&[(X::Volt, 1), (X::Ampere, -1)]),
+        D::Sensitivity,
+        [1.0, 1.0],
+    ),
+    (
         powers(&[(X::Ampere, 1), (X::Second, -1)]),
         D::CurrentRate,
         [1.0, 1.0],
@@ -294,6 +302,7 @@ pub(super) const KNOWN: &[(D, &[&str])] = &[
         D::CurrentPerCount,
         &["A/count", "mA/count", "uA/count", "mA/LSB"],
     ),
+    (D::Sensitivity, &["mV/A", "V/A"]),
     (D::CurrentRate, &["A/s", "A/ms", "mA/s", "kA/s"]),
     (D::SpeedRate, &["rpm/s", "krpm/s", "rad/s2"]),
     (D::Periods, &["periods", "period"]),

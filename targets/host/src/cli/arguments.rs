@@ -43,7 +43,8 @@ pub struct Arguments {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Designs, verifies and simulates the controllers of a motor, prints a verdict and writes a page
+    /// Designs, verifies and simulates the controllers of a motor, prints a verdict and writes a page;
+    /// takes a minute or more on two cores
     Report(report::Options),
     /// Prints a controller's code, intermediate form or data sheet
     Generate(generate::Options),

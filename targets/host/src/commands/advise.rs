@@ -7,6 +7,7 @@ use hexagen_lab::advise::{Advice, DEVIATING_AT, OWN, Point, SPEEDS, Tried, Worst
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Column, Table};
 use hexagen_lab::text::{significant, without_place};
+use std::fmt::Write as _;
 
 /// Options of `advise`.
 #[derive(Args, Clone, Debug)]
@@ -45,14 +46,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     for line in refusals(&advice) {
         print_text(&paragraph(&line))?;
     }
+    if let Some(text) = &advice.whole_vectors {
+        print_text(&paragraph(text))?;
+    }
     print_text(&paragraph(&verdict(&advice)))
 }
 
-/// The reasons of refused variants, each once.
+/// The reasons of variants that are not possible, each once.
 fn refusals(advice: &Advice) -> Vec<String> {
     let reasons = advice.tried.iter().filter_map(|tried| {
-        let line = tried.refused.as_ref()?.lines().next()?;
-        Some(without_place(line).to_owned())
+        let line = without_place(tried.refused.as_ref()?.lines().next()?);
+        let (_, reason) = line.split_once("]: ").unwrap_or(("", line));
+        let reason = reason.strip_prefix("`kind`: ").unwrap_or(reason);
+        let code = tried.refused_by.as_deref().unwrap_or("refused");
+        Some(format!("Not possible on this board ({code}): {reason}"))
     });
     let mut reasons: Vec<String> = reasons.collect();
     reasons.sort();
@@ -65,7 +72,10 @@ fn verdict(advice: &Advice) -> String {
         return format!("{}: {}", advice.motor, advice.reason);
     };
     let variant = advice.tried[recommended].variant;
-    let (motor, reason) = (&advice.motor, &advice.reason);
+    let (motor, mut reason) = (&advice.motor, advice.reason.clone());
+    if let Some(ripples) = &advice.ripples {
+        let _ = write!(reason, "; {ripples}");
+    }
     if variant == OWN {
         return format!("{motor}: the motor file's own controller. Why: {reason}.");
     }

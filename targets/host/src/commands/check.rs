@@ -1,5 +1,4 @@
-//! `hexagen check`: whether and how well a drive will work, in ten lines (eleven with limits of the bus current)
-//! and within a second.
+//! `hexagen check`: whether and how well a drive will work, in ten lines and within a second.
 //!
 //! The drive is designed and verified as for generation, and judged on the simulated motor
 //! (`hexagen_lab::judgement`); `report` compares, measures and plots.
@@ -47,21 +46,13 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         if let Some(core) = of_core(&drive) {
             note(&format!("the board's chip: {core}"));
         }
-        if let Some(text) = &drive.warning_in_c {
-            note(text);
-        }
         let assumed = motor.assumed();
         if !assumed.is_empty() {
             note(&format!("assumed, so measure: {}", assumed.join(", ")));
         }
         let rows = text::rows(&judgement, &drive, options.reasons, &next(asked));
         let head = format!("{}: {}", judgement.motor, judgement.verdict);
-        print_verdict(&verdict_lines(
-            &head,
-            &rows,
-            most(options, &judgement),
-            "with --all",
-        ))?;
+        print_verdict(&within(&head, &rows, most(options)))?;
     }
     judgement
         .failure()
@@ -85,12 +76,24 @@ fn of_core(drive: &Prepared) -> Option<String> {
     ))
 }
 
+/// The verdict and its rows in so many lines; without the last row, the next command, where two lines of verdict leave
+/// no room for it.
+fn within(head: &str, rows: &[(&str, String)], most: usize) -> Vec<String> {
+    const REST: &str = "with --all";
+    let lines = verdict_lines(head, rows, most, REST);
+    let count: usize = lines.iter().map(|row| row.lines().count()).sum();
+    match rows.split_last() {
+        Some((_, others)) if count > most => verdict_lines(head, others, most, REST),
+        _ => lines,
+    }
+}
+
 /// Most lines.
-fn most(options: &Options, judgement: &Judgement) -> usize {
+fn most(options: &Options) -> usize {
     if options.all || options.reasons {
         usize::MAX
     } else {
-        10 + usize::from(judgement.bus_limits().is_some())
+        10
     }
 }
 

@@ -90,7 +90,9 @@ fn print(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     print_text(&paragraph(&format!(
         "after: from the fault to the sample that trips, median; where nothing is broken, from the start of control on the \
          turning rotor.\npeak: largest true current of a phase or, with a short, of a leg after the fault, over all runs; max_current is {} A, the trip level {} A. \
-         A short draws what a bus whose voltage holds drives through {} of switches and cables, until something ends it.\n\
+         A short joins the named terminals of the motor, or one of them and the negative rail, beyond the current sensors. While \
+         the upper switch of a named phase works against the lower one of the other, or against the rail, it draws what a bus \
+         whose voltage holds drives through {} of switches and cables, until something ends it.\n\
          torque: mean after the fault in percent of the sound drive's, least to greatest of the runs that did not trip; ripple: \
          peak to peak in percent of the same mean, the greatest of these runs. The shaft is held at its speed.",
         significant(study.max_current_a, 3),

@@ -35,7 +35,7 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Failure> {
     let drive = options.drive.prepare()?;
     tell_warnings(&drive);
-    if let (Emit::C99, Some(text)) = (options.emit, &drive.warning_in_c) {
+    if let (Emit::C99 | Emit::Datasheet, Some(text)) = (options.emit, &drive.warning_in_c) {
         note(text);
     }
     let files = files_of(&drive, options.emit);

@@ -53,7 +53,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     } else {
         print_table(&table(&motors))?;
         print_text(&paragraph(&format!(
-            "Each with the default drive, at rated torque, simulated. Torque, the furthest from the demand, and ripple, the greatest, are those of 5, 25, 60 and 100 % of rated speed in both directions, motoring and braking. Limited by: - where the drive is right ({right}). `hexagen check MOTOR` says more of one, `hexagen motors MOTOR` prints its file; --all has every column."
+            "Each with the default drive, at rated torque, simulated. Torque, the furthest from the demand, and ripple, the greatest, are those of 5, 25, 60 and 100 % of rated speed in both directions, motoring and braking. Limited by: - where the drive is right ({right}). A name is the maker's and its word for the type. `hexagen check MOTOR` says more of one, `hexagen motors MOTOR` prints its file with the source; --all has every column."
         )))?;
     }
     for motor in &motors {

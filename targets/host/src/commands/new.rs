@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use template::{ANGLE_POLE_PAIRS, Line, SECTIONS};
+use template::{ANGLE_POLE_PAIRS, Line, POLES, SECTIONS};
 
 /// Options of `new`.
 #[derive(Args, Clone, Debug)]
@@ -80,6 +80,9 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     }
     if !options.json && !asks && !missing.is_empty() {
         note("nothing is asked without a terminal; give values as FIELD=VALUE arguments");
+    }
+    if let Some(assumed) = draft.assumed() {
+        note(assumed);
     }
     if options.json {
         return print_json(&Made {
@@ -220,6 +223,24 @@ impl Draft {
         })
     }
 
+    /// What stands for a field, in the file or in that of its board.
+    fn value(&self, name: &str) -> Option<&str> {
+        let of_board = self.board.iter().flat_map(|(_, fields)| fields);
+        let mut values = self.values.iter().chain(of_board);
+        let (_, value) = values.find(|(field, _)| field == name)?;
+        Some(value)
+    }
+
+    /// What the times of three sensors say of their ADCs without naming them.
+    fn assumed(&self) -> Option<&'static str> {
+        let conversion = self.value("conversion_time")?.split_whitespace().next()?;
+        let is_at_once = conversion.parse() == Ok(0.0) && self.value("current_adcs").is_none();
+        (is_at_once && self.value("sensed_phases") == Some("abc")).then_some(
+            "conversion_time 0 of three sensors: an ADC for each is assumed, which all sample at once; state the time, and \
+             current_adcs, where sensors share one",
+        )
+    }
+
     /// Fields without value and default that a drive needs, or that those which are given call for: the `winding` of
     /// a value per phase.
     fn missing(&self, file: &Path) -> Vec<&'static str> {
@@ -271,6 +292,15 @@ impl Draft {
             let (name, value) = match answer.split_once('=') {
                 Some((name, value)) => (name.trim(), unquoted(value)),
                 None => (line.fields[0], unquoted(&answer)),
+            };
+            let (name, value) = match of_poles(value).filter(|_| line.fields == POLES) {
+                Some((meant, digits)) if name == POLES[0] => {
+                    if digits == value && meant != name {
+                        note(&format!("{digits} is odd, so it is taken as pole pairs."));
+                    }
+                    (meant, digits)
+                }
+                _ => (name, value),
             };
             if !line.fields.contains(&name) {
                 note(&format!(
@@ -397,6 +427,23 @@ fn answer(answers: &mut Answers, example: &str) -> Result<Option<String>, Failur
     let answer =
         answer.map_err(|error| Failure::Argument(format!("cannot read the answer: {error}")))?;
     Ok(answer.map(|answer| answer.trim().to_owned()))
+}
+
+/// The field and the number of an answer on the magnets: `8 pole pairs`, `16 poles`, and an odd number, which pairs
+/// alone may be.
+fn of_poles(value: &str) -> Option<(&'static str, &str)> {
+    let end = value.find(|c: char| !c.is_ascii_digit());
+    let (digits, unit) = value.split_at(end.unwrap_or(value.len()));
+    let number: u32 = digits.parse().ok()?;
+    let [poles, pairs] = [POLES[0], POLES[1]];
+    match unit.trim().to_lowercase().as_str() {
+        "" if number % 2 == 1 => Some((pairs, digits)),
+        "pole pairs" | "pole pair" | "polepairs" | "pole-pairs" | "pole_pairs" | "pairs" => {
+            Some((pairs, digits))
+        }
+        "poles" | "magnets" | "magnet poles" => Some((poles, digits)),
+        _ => None,
+    }
 }
 
 fn names(line: &Line) -> String {
@@ -575,6 +622,50 @@ mod tests {
             "{}",
             draft.text()
         );
+    }
+
+    #[test]
+    fn poles_and_pole_pairs_are_answered_in_words_or_by_an_odd_number() {
+        for (answer, line) in [
+            ("8 pole pairs", "\npole_pairs = 8\n"),
+            ("16 poles", "\npoles = 16\n"),
+            ("7", "\npole_pairs = 7\n"),
+            ("14", "\npoles = 14\n"),
+            ("12N14P", "\npoles = \"12N14P\"\n"),
+            ("pole_pairs=6", "\npole_pairs = 6\n"),
+        ] {
+            let file = Path::new("hub.toml");
+            let mut draft = Draft::of(Vec::new(), file).expect("nothing is wrong");
+            let mut answers = ["", answer].into_iter().map(|text| Ok(text.to_owned()));
+            draft.ask(&mut answers, file).expect("answers are read");
+            assert!(draft.text().contains(line), "{answer}: {}", draft.text());
+        }
+    }
+
+    #[test]
+    fn three_sensors_without_a_conversion_time_are_told_to_have_an_adc_each() {
+        let told = |adcs: Option<&str>| {
+            let given = [
+                Some(("current_sensing", "low_side")),
+                Some(("sensed_phases", "abc")),
+                Some(("conversion_time", "0 us")),
+                adcs.map(|adcs| ("current_adcs", adcs)),
+            ];
+            let given = given.into_iter().flatten();
+            let given = given.map(|(name, value)| (name.to_owned(), value.to_owned()));
+            let draft = Draft::of(given.collect(), Path::new("hub.toml")).expect("is right");
+            // What the file proposes where nothing is said.
+            let text = draft.text();
+            assert_eq!(
+                text.contains("\n# current_adcs = 2\n"),
+                adcs.is_none(),
+                "{text}"
+            );
+            assert!(text.contains("\n# adc_inverted = \"on\"\n"), "{text}");
+            draft.assumed().is_some()
+        };
+        assert!(told(None));
+        assert!(!told(Some("3")));
     }
 
     #[test]

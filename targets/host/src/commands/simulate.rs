@@ -22,8 +22,13 @@ use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+/// The two ways to say a speed.
+const USAGE: &str = "hexagen simulate [OPTIONS] --rpm <RPM> <MOTOR>\n       \
+    hexagen simulate [OPTIONS] --speed-set <SPEED> <MOTOR>";
+
 /// Options of `simulate`.
 #[derive(Args, Clone, Debug)]
+#[command(override_usage = USAGE)]
 pub struct Options {
     /// Motor, controller and plant.
     #[command(flatten)]
@@ -365,15 +370,15 @@ fn braked(
     let at_most = at_most.figures.mean_torque_nm;
     let way = match at_most.filter(|made| made * omega_m > 0.0) {
         Some(made) => format!(
-            "at this set-point; the greatest, {} Nm, makes {} Nm",
+            " at this set-point; the greatest, {} Nm, makes {} Nm",
             significant(most, 4),
             significant(made, 4)
         ),
-        None => "whatever is asked, and no limit holds what it returns; `coast` or stay slower"
+        None => ", whatever is asked, and no limit holds what it returns; `coast` or stay slower"
             .to_owned(),
     };
     Ok(Some(format!(
-        "{} Nm at {} rpm: the EMF exceeds the bus of {} and brakes with {} Nm, {way}",
+        "{} Nm at {} rpm: the EMF exceeds the bus of {} and brakes with {} Nm{way}",
         significant(demand, 4),
         options.start_rpm(),
         engineering(plant.v_bus, "V"),

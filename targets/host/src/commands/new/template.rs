@@ -64,13 +64,16 @@ impl Line {
     }
 }
 
+/// What states the magnets of the rotor.
+pub const POLES: &[&str] = &["poles", "pole_pairs"];
+
 /// Of a sensor on the shaft it is the motor's number.
 pub const ANGLE_POLE_PAIRS: &str = "angle_pole_pairs";
 
 const MOTOR: &[Line] = &[
     needed(&["description"], "Free text for the documentation.", "Rear hub drive").optional(),
     needed(
-        &["poles", "pole_pairs"],
+        POLES,
         "Magnet poles of the rotor; or pole_pairs, half as many.",
         "8",
     ),
@@ -169,8 +172,8 @@ const INVERTER: &[Line] = &[
     needed(&["adc_bits"], "Bits of the phase-current ADCs.", "12").or("12"),
     needed(
         &["adc_range", "adc_gain", "shunt"],
-        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB; or shunt with\n\
-         # amplifier_gain and adc_reference.",
+        "Largest current of either sign that the ADC shows; or adc_gain, as 20 mA/LSB, or\n\
+         # as 66 mV/A with adc_reference; or shunt with amplifier_gain and adc_reference.",
         "40 A",
     ),
     needed(
@@ -185,6 +188,13 @@ const INVERTER: &[Line] = &[
         "3.3 V",
     )
     .only_with("shunt", ""),
+    needed(
+        &["adc_inverted"],
+        "on where counts fall with the current into the motor, as many shunts in the low legs make them; the bring-up\n\
+         # measures it.",
+        "on",
+    )
+    .optional(),
     needed(
         &["current_sensing"],
         "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches;\n\
@@ -215,6 +225,13 @@ const INVERTER: &[Line] = &[
         "ab",
     )
     .asked()
+    .only_with("current_sensing", "low_side"),
+    needed(
+        &["current_adcs"],
+        "ADCs that sample different phases at once, each its share of the phases in turn; 1 where nothing is said.",
+        "2",
+    )
+    .optional()
     .only_with("current_sensing", "low_side"),
     needed(
         &["v_bus"],
