@@ -268,7 +268,7 @@ pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, L
     let points = points.collect::<Result<Vec<_>, _>>()?;
     let entries = motors.iter().zip(points);
     Ok(entries
-        .map(|(motor, points)| entry(motor, points))
+        .map(|(motor, points)| entry(motor, &points))
         .collect())
 }
 
@@ -277,7 +277,7 @@ fn points(drive: &Prepared) -> Result<Vec<RatedPoint>, LabError> {
     Ok(of_quadrants.map(|(point, ..)| point).collect())
 }
 
-fn entry(motor: &SelectedMotor, points: Vec<RatedPoint>) -> LibraryMotor {
+fn entry(motor: &SelectedMotor, points: &[RatedPoint]) -> LibraryMotor {
     let none = LibraryMotor {
         name: motor.source.name.clone(),
         description: None,
