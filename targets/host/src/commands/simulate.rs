@@ -8,7 +8,7 @@ use crate::cli::{
 };
 use clap::Args;
 use hexagen_codegen::diagnostics::{at_most, engineering};
-use hexagen_codegen::spec::{Reference, RotorSensing, SpeedLoop};
+use hexagen_codegen::spec::{RotorSensing, SpeedLoop};
 use hexagen_lab::closed_loop::{
     Aim, FiguresOfMerit, LoadResponse, LoadStep, MOST_RECORDED, Measurement, RunOptions, SETTLED,
     Speed, Trip, measure,
@@ -455,15 +455,17 @@ fn print_table(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
         .map_or(String::new(), |engine| format!(", {}", engine.name()));
     let torque = significant(outcome.torque_nm, 4);
     // With a set speed the torque is no demand.
-    let asked = match outcome.speed.and_then(|speed| speed.set_rpm) {
-        Some(_) => format!("from {} rpm with at most {torque} Nm", outcome.rpm),
-        None => {
-            let reach = drive.reach();
-            let limited = if outcome.torque_nm.abs() > reach * BEYOND {
-                format!(", limited to {} Nm,", significant(reach, 4))
-            } else {
-                String::new()
-            };
+    let asked = if outcome.speed.is_some_and(|speed| speed.set_rpm.is_some()) {
+        format!("from {} rpm with at most {torque} Nm", outcome.rpm)
+    } else {
+        let reach = drive.reach();
+        let limited = if outcome.torque_nm.abs() > reach * BEYOND {
+            format!(", limited to {} Nm,", significant(reach, 4))
+        } else {
+            String::new()
+        };
+        format!("{torque} Nm{limited} at {} rpm", outcome.rpm)
+    };
             format!("{torque} Nm{limited} at {} rpm", outcome.rpm)
         }
     };
