@@ -466,9 +466,6 @@ fn print_table(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
         };
         format!("{torque} Nm{limited} at {} rpm", outcome.rpm)
     };
-            format!("{torque} Nm{limited} at {} rpm", outcome.rpm)
-        }
-    };
     print_text(&paragraph(&format!(
         "{}, {} ({}{engine}): {asked}",
         outcome.ran.motor,
