@@ -49,12 +49,11 @@ fn slots_and_poles(text: &str) -> Option<[u32; 2]> {
         let is_number = digits.bytes().all(|digit| digit.is_ascii_digit());
         digits.parse().ok().filter(|_| is_number)
     };
-    let (slots, poles) = match upper.strip_suffix('P') {
-        Some(slots_first) => slots_first.split_once('N')?,
-        None => {
-            let (poles, slots) = upper.strip_suffix('N')?.split_once('P')?;
-            (slots, poles)
-        }
+    let (slots, poles) = if let Some(slots_first) = upper.strip_suffix('P') {
+        slots_first.split_once('N')?
+    } else {
+        let (poles, slots) = upper.strip_suffix('N')?.split_once('P')?;
+        (slots, poles)
     };
     Some([number(slots)?, number(poles)?])
 }
