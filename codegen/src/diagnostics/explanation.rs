@@ -560,7 +560,7 @@ impl Code {
                 "A motor that brakes drives its current into the bus and raises its voltage. A full battery of lithium cells already stands 17 % above its nominal voltage, and a supply that takes no current rises at once. Where the drive trips so near, braking ends in OverVoltage with all legs off: a vehicle then rolls on.",
                 "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_max = \"54 V\"",
                 "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_max = \"54 V\"\nbraking_fade = \"3 V\"",
-                "State a braking_fade, which takes braking torque back below the trip level, or raise bus_max or over_voltage if switches and capacitors bear it. A return_current_limit holds the mean current alone.",
+                "State a braking_fade, which takes braking torque back below the trip level, or raise bus_max or over_voltage if switches and capacitors bear it. A return_current_limit holds the mean current alone. Near the trip level a fade leaves no braking torque either, without a trip: with a full battery a vehicle needs a mechanical brake or a chopper.",
             ),
             Self::StallBeforeStart => say(
                 "From rest the greatest torque takes the square root of 2 angle inertia/torque to turn the rotor by an angle. If the stall time-out ends before that has turned it through a Hall sector, a start from the far edge of a sector trips with Stall, whatever the load.",

@@ -7,7 +7,7 @@
 use super::alternatives::same_quantity;
 pub use super::basis::Basis;
 use super::schema;
-use super::units::Unit;
+use super::units::{Dimension, Unit};
 use crate::diagnostics::{Diagnostic, Location, catalogue, nearest};
 use std::fmt;
 
@@ -80,6 +80,20 @@ pub enum Value {
     List(Vec<Value>),
     /// Unreadable; the diagnostic says why.
     Malformed(Box<Diagnostic>),
+}
+
+impl Value {
+    /// Whether it is the sensitivity of current sensors, or a list with one.
+    pub(crate) fn is_sensitivity(&self) -> bool {
+        match self {
+            Self::Number(number) => {
+                let unit = number.unit.as_ref();
+                unit.is_some_and(|unit| unit.dimension == Dimension::Sensitivity)
+            }
+            Self::List(values) => values.iter().any(Self::is_sensitivity),
+            _ => false,
+        }
+    }
 }
 
 /// A number with unit and basis.
@@ -207,6 +221,17 @@ impl SpecAst {
     }
 }
 
+impl Field {
+    /// Whether one is the sensitivity of current sensors and the other a field of the converter that it takes.
+    fn goes_with(&self, other: &Self) -> bool {
+        const OF_CONVERTER: [&str; 2] = ["adc_reference", "amplifier_swing"];
+        let takes = |one: &Self, other: &Self| {
+            one.value.is_sensitivity() && OF_CONVERTER.contains(&other.name.as_str())
+        };
+        takes(self, other) || takes(other, self)
+    }
+}
+
 impl Section {
     /// The first field of the given name.
     pub fn field(&self, name: &str) -> Option<&Field> {
@@ -228,7 +253,7 @@ impl Section {
         self.fields.retain(|field| {
             !others
                 .iter()
-                .any(|other| same_quantity(&other.name, &field.name))
+                .any(|other| same_quantity(&other.name, &field.name) && !field.goes_with(other))
         });
     }
 

@@ -9,7 +9,7 @@ pub static CHIPS: [Chip; 3] = [
         name: "STM32G431",
         clock: 170e6,
         clocks_of_waits: &[30e6, 60e6, 90e6, 120e6, 170e6],
-        assumed: "code in flash",
+        assumed: "code in flash, voltage range 1",
         compiler: "rustc 1.96.0",
         in_c: Times::of([1.32, 1.62, 1.71, 1.7, 1.78, 1.84, 2.06]),
         estimates: Times::of([

@@ -239,12 +239,14 @@ impl StepTime {
 
     /// Cycles of a step in control in C: what the counted drives take more there, at most.
     pub fn control_cycles_in_c(&self) -> f64 {
-        f64::from(self.told().control_cycles) * self.chip.in_c.control_cycles
+        let in_c = self.chip.in_c;
+        f64::from(self.told().control_cycles) * in_c.control_cycles.max(in_c.control_core_cycles)
     }
 
     /// Cycles of any step at most, in C.
     pub fn most_cycles_in_c(&self) -> f64 {
-        self.most_cycles() * self.chip.in_c.any_cycles
+        let in_c = self.chip.in_c;
+        self.most_cycles() * in_c.any_cycles.max(in_c.any_core_cycles)
     }
 
     /// Whether a step may take longer than the control period on the core that is named.

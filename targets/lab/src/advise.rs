@@ -283,9 +283,8 @@ fn whole_vectors(drives: &[Drive], tried: &[Tried]) -> Option<String> {
     let (_, (stride, rated)) = *rough.first()?;
     let names: Vec<&str> = rough.iter().map(|(name, _)| *name).collect();
     Some(format!(
-        "Held for a control period, one vector changes a current by up to {}, {:.0} % of the rated one. So {} ripple, and their \
-         mean torque may be off by a part of that step; control at a higher frequency lessens both. Where rated speed takes most \
-         of the bus, the commutations of their currents cost torque besides.",
+        "Held for a control period, one vector changes a current by up to {} at standstill, {:.0} % of the rated one, and by more where the EMF adds to it. So {} ripple, and their \
+         mean torque may be off by a part of that step; control at a higher frequency lessens both.",
         engineering(stride, "A"),
         100.0 * stride / rated,
         names.join(", "),
@@ -619,8 +618,8 @@ fn code_of(error: &LabError) -> Option<Code> {
 fn works(tried: &Tried) -> Option<String> {
     if tried.refused.is_some() {
         let code = tried.refused_by.as_ref();
-        return Some(code.map_or("not possible".to_owned(), |code| {
-            format!("not possible: {code}")
+        return Some(code.map_or("not as the file stands".to_owned(), |code| {
+            format!("not as the file stands: {code}")
         }));
     }
     if tried.overruns {

@@ -278,7 +278,7 @@ impl Judgement {
         buts.extend(self.emf_beyond_bus());
         if self.torque_nm < HELD / 100.0 * drive.rated_torque() {
             buts.push(format!(
-                "`max_current` allows {} of the rated {} only (raise it if the motor stays cool enough)",
+                "`max_current` allows {} of the rated {} only",
                 engineering(self.torque_nm, "Nm"),
                 engineering(drive.rated_torque(), "Nm")
             ));

@@ -429,13 +429,18 @@ pub fn sampled_halls(period: &Part, degrees: f64, ripple: f64) -> Diagnostic {
     )
 }
 
-/// A trip by a bus voltage near the nominal one, with a motor that brakes and no fade; in volt: nominal and trip level.
-/// `limit`: a limit of the returned current.
-pub fn trip_by_braking(
-    level: &Part,
-    limit: Option<&Part>,
-    [nominal, trip]: [f64; 2],
-) -> Diagnostic {
+/// A trip by a bus voltage near the nominal one, with a motor that brakes and no fade; in volt: nominal, and the level
+/// that a fade ends at. `limit`: a limit of the returned current.
+pub fn trip_by_braking(level: &Part, limit: Option<&Part>, [nominal, end]: [f64; 2]) -> Diagnostic {
+    let fade = at_most((end - nominal) / 2.0);
+    let fade = if fade > 0.0 {
+        format!(
+            "state a `braking_fade`, such as {}, or ",
+            engineering(fade, "V")
+        )
+    } else {
+        String::new()
+    };
     let held = if limit.is_some() {
         " (`return_current_limit` holds the mean of the current, not the voltage)"
     } else {
@@ -445,11 +450,10 @@ pub fn trip_by_braking(
         Code::TripByBraking,
         &level.location,
         format!(
-            "`{}`: {} is less than 20 % above the nominal {}: a full battery is near it, a supply that takes no current back rises to it{held}, and braking then trips the drive with `OverVoltage`, all legs off; state a `braking_fade`, such as {}, or raise `{}` if switches and capacitors bear it",
+            "`{}`: {} is less than 20 % above the nominal {}: a full battery is near it, a supply that takes no current back rises to it{held}, and braking then trips the drive with `OverVoltage`, all legs off; {fade}raise `{}` if switches and capacitors bear it",
             level.field,
             level.given,
             engineering(nominal, "V"),
-            engineering((trip - nominal) / 2.0, "V"),
             level.field,
         ),
     );

@@ -3,7 +3,7 @@
 use super::sensing::{self, Sensing};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Location, at_least, at_most, engineering};
-use crate::spec::ast::{Field, Value};
+use crate::spec::ast::Field;
 use crate::spec::model::period_within;
 use crate::spec::reader::{Given, Reader};
 use crate::spec::schema;
@@ -411,6 +411,9 @@ const SHUNT: [&str; 3] = ["shunt", "amplifier_gain", REFERENCE];
 /// How far the amplifier's output follows the current.
 const SWING: &str = "amplifier_swing";
 
+/// With what a field of the converter's volts has an effect.
+const OF_VOLTS: &str = "shunt` or a sensitivity in `adc_gain";
+
 /// The gains of a converter of so many counts: from the range, as stated, from the sensors' sensitivity and the
 /// converter's reference, or from shunt, amplifier and reference.
 fn read_gains(
@@ -419,29 +422,24 @@ fn read_gains(
     counts: f64,
     errors: &mut Collector,
 ) -> Option<Gains> {
-    let is_sensitivity = states_sensitivity(reader);
+    let is_sensitivity = reader
+        .field(GAIN)
+        .is_some_and(|field| field.value.is_sensitivity());
     // A sensitivity takes the reference, too.
     let mut shunt = SHUNT.iter().filter_map(|name| reader.field(name));
     match shunt.find(|field| !is_sensitivity || field.name != REFERENCE) {
+        Some(only) if only.name == REFERENCE && reader.field(GAIN).is_some() => {
+            let given = reader.part(REFERENCE, String::new).given;
+            let at = &only.name_location;
+            errors.push(catalogue::needless_field(
+                at, REFERENCE, &given, OF_VOLTS, None,
+            ));
+            stated_gains(reader, phases, counts, errors)
+        }
         Some(shunt) => gains_of_shunt(reader, shunt, phases, counts, errors),
         None if is_sensitivity => gains_of_sensors(reader, phases, counts, errors),
         None => stated_gains(reader, phases, counts, errors),
     }
-}
-
-/// Whether `adc_gain` is the voltage per ampere of the sensors.
-fn states_sensitivity(reader: &Reader) -> bool {
-    let is_sensitivity = |value: &Value| match value {
-        Value::Number(number) => {
-            let unit = number.unit.as_ref();
-            unit.is_some_and(|unit| unit.dimension == Dimension::Sensitivity)
-        }
-        _ => false,
-    };
-    reader.field(GAIN).is_some_and(|field| match &field.value {
-        Value::List(values) => values.iter().any(is_sensitivity),
-        value => is_sensitivity(value),
-    })
 }
 
 /// From the range, or ampere per count.
@@ -453,7 +451,7 @@ fn stated_gains(
 ) -> Option<Gains> {
     if let Some(swing) = reader.plain_quantity(errors, SWING) {
         let (at, given) = (&swing.part.location, &swing.part.given);
-        errors.push(catalogue::needless_field(at, SWING, given, "shunt", None));
+        errors.push(catalogue::needless_field(at, SWING, given, OF_VOLTS, None));
     }
     if [RANGE, GAIN]
         .iter()

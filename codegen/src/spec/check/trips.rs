@@ -22,12 +22,14 @@ fn check_braking(reader: &Reader, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
     let BusSource::Measured {
         over,
         braking: None,
+        max,
         ..
     } = spec.inverter.bus
     else {
         return;
     };
-    if over <= 0.0 || over > NEAR * nominal {
+    let is_clamped = spec.inverter.bus_clamp.is_some_and(|clamp| clamp < over);
+    if over <= 0.0 || over >= NEAR * nominal * (1.0 - 1e-9) || is_clamped {
         return;
     }
     let name = if reader.field("over_voltage").is_some() {
@@ -42,7 +44,7 @@ fn check_braking(reader: &Reader, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
     warnings.push(catalogue::trip_by_braking(
         &level,
         limit.as_ref(),
-        [nominal, over],
+        [nominal, over.min(max)],
     ));
 }
 

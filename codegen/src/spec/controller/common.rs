@@ -188,7 +188,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
     Row::of(
         rule::choice::<bool>("speed_loop", "on")
             .preset("off")
-            .about("PI speed controller on the speed from Hall timing: `set_speed` sets rpm, `set_current` and `set_torque` limit its current (`max_current` by default); needs `inertia` of rotor and load"),
+            .about("PI speed controller on the speed from Hall edges or angle sensor: `set_speed` sets rpm, `set_current` and `set_torque` limit its current (`max_current` by default); needs `inertia` of rotor and load"),
         |_| None,
     ),
     Row::of(
@@ -693,6 +693,17 @@ fn read_filter(reader: &Reader, emf: EmfSource, errors: &mut Collector) -> f64 {
 /// crossover leaves 44 of the 76 degrees that the PI regulator has without.
 const FILTERED: f64 = 0.1;
 
+/// Greatest bandwidth of the speed loop in hertz, and what limits it: the electrical frequency at rated speed, or the
+/// time constant of the filter of an angle sensor's speed.
+fn greatest_bandwidth(frequency: f64, filter: Option<f64>) -> (f64, &'static str) {
+    const OF_FILTER: &str = "0.1 over the time constant of the angle sensor's speed filter (more `angle_bits`, if the sensor has them, shorten it)";
+    let of_turn = frequency / 8.0;
+    match filter.map(|time| FILTERED / time) {
+        Some(most) if most < of_turn => (most, OF_FILTER),
+        _ => (of_turn, "1/8 of the electrical frequency at rated speed"),
+    }
+}
+
 /// Hall edges tell the speed as a mean over an electrical turn, which limits the bandwidth to 1/8 of the electrical
 /// frequency at rated speed, and angles through a filter, whose lag limits it, too; 1/50 of that frequency by default.
 fn read_speed_loop(
@@ -717,17 +728,7 @@ fn read_speed_loop(
         return None;
     }
     let frequency = drive.rated_frequency?;
-    let of_filter = drive.speed_filter.map(|time| FILTERED / time);
-    let (most, why) = match of_filter.filter(|most| *most < frequency / 8.0) {
-        Some(most) => (
-            most,
-            "0.1 over the time constant of the angle sensor's speed filter (more `angle_bits`, if the sensor has them, shorten it)",
-        ),
-        None => (
-            frequency / 8.0,
-            "1/8 of the electrical frequency at rated speed",
-        ),
-    };
+    let (most, why) = greatest_bandwidth(frequency, drive.speed_filter);
     if let Some(bandwidth) = &bandwidth
         && bandwidth.si > most
     {

@@ -139,7 +139,8 @@ fn sensitivity_and_reference_make_a_gain() {
     // A gain per count leaves nothing to say to the reference.
     let text = told("adc_gain = \"20 mA/count\"\nadc_reference = \"3.3 V\"");
     assert!(
-        text.contains("`adc_gain`") && text.contains("`adc_reference`"),
+        text.contains("`adc_reference`: 3.3 V has an effect only with `shunt`")
+            && !text.contains("amplifier_gain"),
         "{text}"
     );
     let text = told(&format!(

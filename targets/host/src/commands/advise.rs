@@ -52,14 +52,14 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     print_text(&paragraph(&verdict(&advice)))
 }
 
-/// The reasons of variants that are not possible, each once.
+/// The reasons of variants that the file does not allow as it stands, each once.
 fn refusals(advice: &Advice) -> Vec<String> {
     let reasons = advice.tried.iter().filter_map(|tried| {
         let line = without_place(tried.refused.as_ref()?.lines().next()?);
         let (_, reason) = line.split_once("]: ").unwrap_or(("", line));
         let reason = reason.strip_prefix("`kind`: ").unwrap_or(reason);
         let code = tried.refused_by.as_deref().unwrap_or("refused");
-        Some(format!("Not possible on this board ({code}): {reason}"))
+        Some(format!("Not as the file stands ({code}): {reason}"))
     });
     let mut reasons: Vec<String> = reasons.collect();
     reasons.sort();

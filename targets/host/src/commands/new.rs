@@ -17,7 +17,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use template::{ANGLE_POLE_PAIRS, Line, POLES, SECTIONS};
+use template::{ANGLE_POLE_PAIRS, Line, POLES, REFERENCE, SECTIONS};
 
 /// Options of `new`.
 #[derive(Args, Clone, Debug)]
@@ -180,7 +180,7 @@ impl Draft {
             line.only_with.is_none_or(|(field, value)| {
                 let mut values = self.values.iter();
                 values.any(|(name, given)| name == field && (value.is_empty() || given == value))
-            })
+            }) || line.fields == REFERENCE && self.states_sensitivity()
         };
         lines.iter().filter(move |line| {
             let is_of_board = |(_, fields): &(String, Values)| {
@@ -231,10 +231,17 @@ impl Draft {
         Some(value)
     }
 
+    /// Whether the gain of the current sensors is one in volt per ampere, which takes the ADC's reference.
+    fn states_sensitivity(&self) -> bool {
+        let mut values = self.values.iter();
+        values.any(|(name, given)| name == "adc_gain" && given.ends_with("V/A"))
+    }
+
     /// What the times of three sensors say of their ADCs without naming them.
     fn assumed(&self) -> Option<&'static str> {
-        let conversion = self.value("conversion_time")?.split_whitespace().next()?;
-        let is_at_once = conversion.parse() == Ok(0.0) && self.value("current_adcs").is_none();
+        let conversion = self.value("conversion_time")?;
+        let number = conversion.trim_end_matches(|c: char| !c.is_ascii_digit());
+        let is_at_once = number.parse() == Ok(0.0) && self.value("current_adcs").is_none();
         (is_at_once && self.value("sensed_phases") == Some("abc")).then_some(
             "conversion_time 0 of three sensors: an ADC for each is assumed, which all sample at once; state the time, and \
              current_adcs, where sensors share one",
@@ -289,12 +296,14 @@ impl Draft {
             let Some(answer) = answer(answers, &self.example(line))? else {
                 return Ok(());
             };
-            let (name, value) = match answer.split_once('=') {
+            let named = answer.split_once('=');
+            let (name, value) = match named {
                 Some((name, value)) => (name.trim(), unquoted(value)),
                 None => (line.fields[0], unquoted(&answer)),
             };
-            let (name, value) = match of_poles(value).filter(|_| line.fields == POLES) {
-                Some((meant, digits)) if name == POLES[0] => {
+            let is_bare = named.is_none() && line.fields == POLES;
+            let (name, value) = match of_poles(value).filter(|_| is_bare) {
+                Some((meant, digits)) => {
                     if digits == value && meant != name {
                         note(&format!("{digits} is odd, so it is taken as pole pairs."));
                     }

@@ -56,7 +56,7 @@ pub fn chip(target: Target) -> Chip {
         Target::CortexM4 => Chip {
             name: "STM32G431",
             clocks_of_waits: &[30, 60, 90, 120, 170],
-            assumed: "code in flash",
+            assumed: "code in flash, voltage range 1",
             division: 12,
             refill: 3,
             not_taken: 0,

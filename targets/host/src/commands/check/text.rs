@@ -61,13 +61,13 @@ fn of_motor(motor: &MotorSpec) -> String {
             format!("{} kg m2", significant(inertia, 3))
         });
     format!(
-        "{} pole pair{} ({} magnets), star phase {}, {}; {} per rated A; {inertia}",
+        "{} pole pair{} ({} magnets), star phase {}, {}; {}; {inertia}",
         motor.pole_pairs,
         if motor.pole_pairs == 1 { "" } else { "s" },
         2 * motor.pole_pairs,
         engineering(motor.resistance, "ohm"),
         engineering(motor.inductance, "H"),
-        engineering(motor.rated_torque_constant(), "Nm"),
+        engineering(motor.rated_torque_constant(), "Nm/A"),
     )
 }
 
@@ -89,12 +89,13 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
         [slow, rated] => format!("{slow} kHz, at rated speed {rated} kHz"),
         rates => format!("{} kHz", rates.join(", ")),
     };
+    // At the nominal bus.
     let ripple = drive.spec.pwm_ripple().map_or(String::new(), |most| {
-        format!(" (ripple within a period up to {})", engineering(most, "A"))
+        format!("; PWM ripple up to {} A peak to peak", significant(most, 3))
     });
     let speed = drive.left_out.map(|speed| of_speed_loop(speed, drive));
     format!(
-        "{}, {edges}; switches at {rates}{ripple}{}",
+        "{}, {edges}; switches at {rates}{}{ripple}",
         drive.spec.controller.kind(),
         speed.unwrap_or_default(),
     )
@@ -195,13 +196,15 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     let rated = match motor.emf_shape {
         _ if judgement.peak_a <= MORE * motor.rated_current => format!("rated {rated} peak"),
         // A current that is no block gives the torque of the rated one with another peak.
-        EmfShape::Trapezoidal { .. } => format!("by its shape above the rated {rated}"),
-        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
+        EmfShape::Trapezoidal { .. } | EmfShape::Harmonics(_) => {
+            format!("by shape above rated {rated}")
+        }
+        EmfShape::Sinusoidal => {
             let as_block = judgement.peak_a * 3.0_f64.sqrt() / 2.0;
             if as_block <= MORE * motor.rated_current {
-                format!("a sine that heats no more than a block of the rated {rated}")
+                format!("heats no more than a block of the rated {rated}")
             } else {
-                format!("a sine that heats more than a block of the rated {rated}")
+                format!("heats more than a block of the rated {rated}")
             }
         }
     };

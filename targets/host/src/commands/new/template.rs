@@ -67,6 +67,9 @@ impl Line {
 /// What states the magnets of the rotor.
 pub const POLES: &[&str] = &["poles", "pole_pairs"];
 
+/// Voltage of the ADC's full scale.
+pub const REFERENCE: &[&str] = &["adc_reference"];
+
 /// Of a sensor on the shaft it is the motor's number.
 pub const ANGLE_POLE_PAIRS: &str = "angle_pole_pairs";
 
@@ -183,7 +186,7 @@ const INVERTER: &[Line] = &[
     )
     .only_with("shunt", ""),
     needed(
-        &["adc_reference"],
+        REFERENCE,
         "Voltage of the ADC's full scale.",
         "3.3 V",
     )
@@ -228,7 +231,8 @@ const INVERTER: &[Line] = &[
     .only_with("current_sensing", "low_side"),
     needed(
         &["current_adcs"],
-        "ADCs that sample different phases at once, each its share of the phases in turn; 1 where nothing is said.",
+        "ADCs that sample different phases at once, each its share of the phases in turn; 1 where nothing is said;\n\
+         # without effect where conversion_time is 0.",
         "2",
     )
     .optional()
