@@ -706,7 +706,7 @@ fn check_tells_how_often_the_switches_turn_on() {
         let slow = 1e-3 * number(&json["points"][0], "switching_hz");
         assert!(kilohertz.contains(&slow), "{variant}: {slow} kHz");
         let said = run(arguments);
-        let text = format!("switches at {slow:.1} kHz; PWM ripple up to 1.82 A peak to peak");
+        let text = format!("switches at {slow:.1} kHz; PWM ripple to 1.82 A pp");
         assert!(said.stdout.contains(&text), "{variant}: {said:?}");
     }
 }

@@ -91,7 +91,7 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     };
     // At the nominal bus.
     let ripple = drive.spec.pwm_ripple().map_or(String::new(), |most| {
-        format!("; PWM ripple up to {} A peak to peak", significant(most, 3))
+        format!("; PWM ripple to {} A pp", significant(most, 3))
     });
     let speed = drive.left_out.map(|speed| of_speed_loop(speed, drive));
     format!(
