@@ -45,7 +45,7 @@ fn item(time: &StepTime) -> [String; 4] {
         .unwrap_or_default();
     let chip = time.chip;
     let clock = engineering(time.clock, "Hz");
-    let at = if time.clock <= chip.clock {
+    let at = if time.clock <= chip.clock() {
         let waits = match chip.waits(time.clock) {
             0 => "no wait states".to_owned(),
             1 => "1 wait state".to_owned(),
@@ -56,7 +56,7 @@ fn item(time: &StepTime) -> [String; 4] {
             chip.name, chip.core, chip.assumed
         )
     } else {
-        let of_chip = engineering(chip.clock, "Hz");
+        let of_chip = engineering(chip.clock(), "Hz");
         format!(
             "{} at {clock}, cycles as on {} at {of_chip}, {}",
             chip.core, chip.name, chip.assumed

@@ -285,7 +285,7 @@ fn speed_loop(speed: SpeedLoop, spec: &Spec) -> [String; 8] {
         Some(sensor) => format!(
             "it holds any speed, for it has the speed from two angles in a row through a filter of {}.",
             engineering(
-                f64::from(spec.speed_filter(sensor)).exp2() * spec.inverter.t_s,
+                sensor.filter_time(spec.motor.rated_frequency(), spec.inverter.t_s),
                 "s"
             )
         ),

@@ -62,6 +62,12 @@ impl AngleSensor {
         let periods = (self.step() / allowed).max(1.0);
         (periods.log2().ceil() as u32).clamp(1, SLOWEST_FILTER)
     }
+
+    /// Time constant of that filter at a control period of `t_s`, second; `frequency`: electrical turns in a second at
+    /// rated speed.
+    pub fn filter_time(self, frequency: f64, t_s: f64) -> f64 {
+        f64::from(self.speed_filter(frequency * t_s)).exp2() * t_s
+    }
 }
 
 impl Spec {

@@ -189,6 +189,11 @@ impl MotorSpec {
         (self.rated_speed * f64::from(self.pole_pairs) * t_s).to_degrees()
     }
 
+    /// Electrical turns in a second at rated speed, hertz.
+    pub fn rated_frequency(&self) -> f64 {
+        self.rated_speed * f64::from(self.pole_pairs) / TAU
+    }
+
     /// Torque per ampere of the rated current, Nm/A.
     pub fn rated_torque_constant(&self) -> f64 {
         self.emf_constant * self.emf_shape.rated_factor()

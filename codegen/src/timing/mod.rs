@@ -43,9 +43,7 @@ pub struct Chip {
     pub core: &'static str,
     /// The chip's name.
     pub name: &'static str,
-    /// Highest clock of the core, hertz.
-    pub clock: f64,
-    /// Highest clocks at which the memory takes 0, 1, 2 … wait states, hertz.
+    /// Highest clocks at which the memory takes 0, 1, 2 … wait states, hertz; the last is the core's highest.
     pub clocks_of_waits: &'static [f64],
     /// What the cycles assume.
     pub assumed: &'static str,
@@ -139,24 +137,15 @@ impl<T> Times<T> {
     }
 
     /// The same of other figures.
-    pub fn map<U>(self, of: impl FnMut(T) -> U) -> Times<U> {
-        let [
-            normal,
-            control,
-            control_core_cycles,
-            control_cycles,
-            any,
-            any_core_cycles,
-            any_cycles,
-        ] = self.into_array().map(of);
+    pub fn map<U>(self, mut of: impl FnMut(T) -> U) -> Times<U> {
         Times {
-            normal,
-            control,
-            control_core_cycles,
-            control_cycles,
-            any,
-            any_core_cycles,
-            any_cycles,
+            normal: of(self.normal),
+            control: of(self.control),
+            control_core_cycles: of(self.control_core_cycles),
+            control_cycles: of(self.control_cycles),
+            any: of(self.any),
+            any_core_cycles: of(self.any_core_cycles),
+            any_cycles: of(self.any_cycles),
         }
     }
 }
@@ -263,7 +252,7 @@ impl StepTime {
     /// Whether the figures are bounds: counted, and at no higher clock than the chip's, beyond which
     /// a memory takes more wait states.
     pub fn is_bound(&self) -> bool {
-        self.errors.is_none() && self.clock <= self.chip.clock
+        self.errors.is_none() && self.clock <= self.chip.clock()
     }
 
     /// The figures, estimates with two digits.
@@ -309,7 +298,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
         .map(|chip| {
             let counted = chip.counted(digest);
             let times = counted.unwrap_or_else(|| chip.estimated(&work));
-            let clock = asked.clock.unwrap_or(chip.clock);
+            let clock = asked.clock.unwrap_or(chip.clock());
             let part = chip.part_of_waits(clock);
             StepTime {
                 chip,
@@ -359,20 +348,28 @@ impl Chip {
         })
     }
 
+    /// Highest clock of the core, hertz.
+    pub fn clock(&self) -> f64 {
+        self.clocks_of_waits.last().copied().unwrap_or_default()
+    }
+
+    /// Most wait states, those at the highest clock.
+    fn most_waits(&self) -> usize {
+        self.clocks_of_waits.len() - 1
+    }
+
     /// Wait states of the memory at a clock in hertz: all beyond the chip's highest.
     pub fn waits(&self, clock: f64) -> usize {
-        let most = self.clocks_of_waits.len() - 1;
         let fast_enough = self
             .clocks_of_waits
             .iter()
             .position(|&highest| clock <= highest);
-        fast_enough.unwrap_or(most)
+        fast_enough.unwrap_or(self.most_waits())
     }
 
     /// The same as a part of those at the chip's highest clock; 0 of a memory without any.
     fn part_of_waits(&self, clock: f64) -> f64 {
-        let most = self.clocks_of_waits.len() - 1;
-        self.waits(clock) as f64 / most.max(1) as f64
+        self.waits(clock) as f64 / self.most_waits().max(1) as f64
     }
 
     fn estimated(&self, work: &Times<Work>) -> Times<u32> {
@@ -429,7 +426,6 @@ mod tests {
         core: "Core",
         assumed: "code in flash",
         name: "Chip",
-        clock: 48e6,
         clocks_of_waits: &[24e6, 36e6, 48e6],
         compiler: "rustc",
         in_c: Times::of([2.0; FIGURES]),

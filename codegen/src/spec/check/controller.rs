@@ -59,10 +59,7 @@ pub(super) fn read(
         _ => None,
     };
     let speed_filter = match (motor.angle, rated_frequency, inverter.t_s) {
-        (Some(sensor), Some(frequency), Some(t_s)) => {
-            let periods = f64::from(sensor.speed_filter(frequency * t_s)).exp2();
-            Some(periods * t_s)
-        }
+        (Some(sensor), Some(frequency), Some(t_s)) => Some(sensor.filter_time(frequency, t_s)),
         _ => None,
     };
     let surroundings = Surroundings {

@@ -184,12 +184,11 @@ pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
             });
         let _ = write!(
             chips,
-            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clock: {}e6, clocks_of_waits: &[{}], assumed: {:?}, compiler: {compiler:?}, \
+            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clocks_of_waits: &[{}], assumed: {:?}, compiler: {compiler:?}, \
              in_c: {in_c}, estimates: {estimates}, counted: &[{counted}] }},",
             core(*target),
             name(*target),
             chip.name,
-            chip.clock(),
             clocks,
             chip.assumed,
         );

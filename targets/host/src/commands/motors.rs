@@ -98,8 +98,6 @@ fn table(motors: &[LibraryMotor]) -> Table {
         let power = power.map(|(torque, rpm)| torque * rpm * PI / 30.0);
         let torques = motor.points.iter().filter_map(|point| point.torque_pct);
         let ripples = motor.points.iter().filter_map(|point| point.ripple_pct);
-        let percent =
-            |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.1}"));
         let cells = [
             motor.name.clone(),
             cell(motor.v_bus_v, 1.0),
@@ -107,12 +105,17 @@ fn table(motors: &[LibraryMotor]) -> Table {
             cell(motor.rated_torque_nm, 1.0),
             cell(motor.rated_rpm, 1.0),
             cell(power, 1.0),
-            percent(torques.reduce(|one, other| further((one, other)))),
-            percent(ripples.reduce(f64::max)),
+            tenths(torques.reduce(|one, other| further((one, other)))),
+            tenths(ripples.reduce(f64::max)),
         ];
         table.row(cells.map(Cell::from).into_iter().chain([limit(motor)]));
     }
     table
+}
+
+/// A percentage with one digit behind the point.
+fn tenths(percent: Option<f64>) -> String {
+    percent.map_or("-".to_owned(), |value| format!("{value:.1}"))
 }
 
 /// A number times a scale.
@@ -144,10 +147,7 @@ fn all_columns(motors: &[LibraryMotor]) -> Table {
     );
     for motor in motors {
         let points = |of: fn(&RatedPoint) -> Option<f64>| {
-            let points = motor.points.iter().map(|point| match of(point) {
-                Some(value) => format!("{value:.1}"),
-                None => "-".to_owned(),
-            });
+            let points = motor.points.iter().map(|point| tenths(of(point)));
             points.collect::<Vec<_>>().join(", ")
         };
         let cells = [

@@ -28,8 +28,6 @@ pub struct Chip {
     refill: u32,
     /// What a conditional branch that is not taken takes beyond one cycle.
     not_taken: u32,
-    /// Whether the wait states are counted that the memory takes at the highest clock.
-    has_waits: bool,
     /// Bytes of a line of this memory.
     line: u32,
     /// Bytes by which code is moved from where the linker placed it.
@@ -60,7 +58,6 @@ pub fn chip(target: Target) -> Chip {
             division: 12,
             refill: 3,
             not_taken: 0,
-            has_waits: true,
             line: 8,
             moved: 0,
         },
@@ -75,7 +72,6 @@ pub fn chip(target: Target) -> Chip {
             division: 0,
             refill: 3,
             not_taken: 0,
-            has_waits: true,
             line: 4,
             moved: 0,
         },
@@ -90,7 +86,6 @@ pub fn chip(target: Target) -> Chip {
             division: 19,
             refill: 2,
             not_taken: 2,
-            has_waits: true,
             line: 4,
             moved: 0,
         },
@@ -162,16 +157,15 @@ impl Chip {
         self.clocks_of_waits.last().copied().unwrap_or_default()
     }
 
-    /// Wait states that are counted for each line.
+    /// Wait states that are counted for each line: those at the highest clock.
     fn waits(&self) -> u32 {
-        let most = self.clocks_of_waits.len() as u32 - 1;
-        if self.has_waits { most } else { 0 }
+        self.clocks_of_waits.len() as u32 - 1
     }
 
-    /// The chip at a clock at which its memory takes no wait states.
+    /// The chip up to the clock at which its memory takes no wait states.
     pub fn without_waits(self) -> Self {
         Self {
-            has_waits: false,
+            clocks_of_waits: &self.clocks_of_waits[..1],
             ..self
         }
     }
