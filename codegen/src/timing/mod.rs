@@ -103,7 +103,7 @@ pub struct StepTime {
     pub period: f64,
     /// Whether the specification names the core.
     pub is_named: bool,
-    /// Figures, the cycles with the wait states of the clock.
+    /// Figures; their cycles have the wait states that the memory takes at this clock.
     pub times: Times<u32>,
     /// Largest errors of the estimates; `None` for a drive that was counted.
     pub errors: Option<Times<f64>>,

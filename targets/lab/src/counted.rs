@@ -41,7 +41,7 @@ pub struct Longest {
     pub instructions: u32,
     /// Instructions of a step that controls.
     pub instructions_in_control: u32,
-    /// Cycles of any step at most, on the chip that `cargo xtask cost` names, with all wait states of its memory.
+    /// Cycles of any step at most, on the chip that `cargo xtask cost` names, at its highest clock.
     pub cycles: u32,
     /// Cycles of a step that controls.
     pub cycles_in_control: u32,

@@ -85,12 +85,12 @@ pub struct SpeedLoop {
 const TURNS_IN_CONTROL: f64 = 4.0;
 
 impl SpeedLoop {
-    /// Least speed that the loop holds where it is the mean of the last electrical turn, rad/s.
+    /// Least speed that the loop holds where Hall edges tell the speed, as the mean of the last electrical turn, rad/s.
     pub fn least_speed(&self, pole_pairs: u32) -> f64 {
         TAU * TURNS_IN_CONTROL * self.bandwidth / f64::from(pole_pairs)
     }
 
-    /// Greatest bandwidth of a loop that holds a speed in rad/s so measured, hertz.
+    /// Greatest bandwidth with which such a loop holds a speed in rad/s, hertz.
     pub fn bandwidth_for(speed: f64, pole_pairs: u32) -> f64 {
         speed.abs() * f64::from(pole_pairs) / (TAU * TURNS_IN_CONTROL)
     }
