@@ -51,9 +51,9 @@ fn closed(drive: &Prepared, params: PlantParams, omega: f64, share: f64) -> Clos
     ClosedLoop::new(plant, engine, run_of(&drive.spec, omega, 0.0).delay)
 }
 
-/// Electrical turns from the stated speed to the trip, with a shaft that the rated torque drives from a
-/// speed below: it would double the rated speed in a quarter of a second.
-fn turns_until_trip(drive: &Prepared) -> f64 {
+/// Electrical turns from the stated speed to the trip, with a shaft that the rated torque drives in a direction from
+/// a speed below: it would double the rated speed in a quarter of a second.
+fn turns_until_trip(drive: &Prepared, direction: f64) -> f64 {
     let (motor, inverter) = (&drive.spec.motor, &drive.spec.inverter);
     let over_speed = inverter.over_speed.expect("is watched");
     let turn = TAU / (over_speed * f64::from(motor.pole_pairs));
@@ -63,14 +63,14 @@ fn turns_until_trip(drive: &Prepared) -> f64 {
     params.mechanics = Some(Mechanics {
         inertia: drive.demand() * 0.25 / motor.rated_speed,
         opposing_torque: 0.0,
-        external_torque: drive.demand(),
+        external_torque: direction * drive.demand(),
         viscous: 0.0,
     });
-    let mut closed = closed(drive, params, 0.9 * motor.rated_speed, 0.0);
+    let mut closed = closed(drive, params, direction * 0.9 * motor.rated_speed, 0.0);
     let mut since = 0;
     for _ in 0..(1.0 / inverter.t_s) as usize {
         closed.run(1, &mut ());
-        let omega = closed.plant().truth().omega_m;
+        let omega = direction * closed.plant().truth().omega_m;
         if let Some(fault) = closed.controller().fault() {
             assert_eq!(fault, Fault::OverSpeed, "{}", drive.motor);
             assert!(omega >= over_speed, "{}: at {omega} rad/s", drive.motor);
@@ -89,9 +89,11 @@ fn a_driven_shaft_trips_within_two_turns() {
         .collect();
     all.par_iter().for_each(|&(motor, law)| {
         let drive = drive(motor, law, |plain| 1.3 * plain.spec.motor.rated_speed);
-        let turns = turns_until_trip(&drive);
-        // The mean lags by half a turn, seven edges take one more, and the first one up to a sector.
-        assert!(turns < 2.0, "{motor} {law}: {turns} turns");
+        for direction in [1.0, -1.0] {
+            let turns = turns_until_trip(&drive, direction);
+            // The mean lags by half a turn, seven edges take one more, and the first one up to a sector.
+            assert!(turns < 2.0, "{motor} {law} {direction}: {turns} turns");
+        }
     });
 }
 
@@ -109,8 +111,10 @@ fn a_driven_shaft_with_an_encoder_trips_within_two_turns() {
             let drive = drive_of((motor, source), "pdcc", |plain| {
                 1.3 * plain.spec.motor.rated_speed
             });
-            let turns = turns_until_trip(&drive);
-            assert!(turns < 2.0, "{motor} {fields}: {turns} turns");
+            for direction in [1.0, -1.0] {
+                let turns = turns_until_trip(&drive, direction);
+                assert!(turns < 2.0, "{motor} {fields} {direction}: {turns} turns");
+            }
         }
     }
 }

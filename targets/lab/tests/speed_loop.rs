@@ -2,7 +2,9 @@
 //! reversal, load steps, a held rotor, current limit, and the documented lowest speed.
 
 use hexagen_lab::closed_loop::ClosedLoop;
-use hexagen_lab::engine::{Engine, Model, MotorSource, Prepared, plant_of, prepare, run_of};
+use hexagen_lab::engine::{
+    Engine, Model, MotorSource, Prepared, library, plant_of, prepare, run_of,
+};
 use hexagen_lab::plant::{Mechanics, Plant};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -178,6 +180,43 @@ fn starts_under_load_reverses_and_handles_load_steps() {
         }
         assert_eq!(bench.closed.tripped(), None, "{name}");
     });
+}
+
+/// Time in which the rated torque brings a motor and its load to the rated speed, second.
+const RUN_UP: f64 = 0.25;
+
+/// What is wrong with a motor's speeds under load.
+fn wrong_speeds(motor: &str, law: &str) -> Vec<String> {
+    let source = MotorSource::of_library(motor).expect("is in the library");
+    let plain = prepare(&source, Some(law)).unwrap_or_else(|why| panic!("{motor} {law}: {why}"));
+    let inertia = plain.demand() * RUN_UP / plain.spec.motor.rated_speed;
+    let drive = drive(
+        motor,
+        &format!("{inertia} kg m2"),
+        &format!("{law}:speed_loop=on"),
+    );
+    let mut bench = Bench::at_rest(&drive, 1.0, 0.3);
+    let mut wrong = vec![];
+    for share in [0.8, -0.5] {
+        let leg = bench.run(share, 12.0);
+        println!("{motor} {law} {share} of rated speed: {leg:.4?}");
+        if (leg.mean - 1.0).abs() > 0.01 || bench.closed.tripped().is_some() {
+            wrong.push(format!("{motor} {law} {share}: {leg:?}"));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn every_library_motor_holds_its_speed_within_a_percent() {
+    let wrong: Vec<String> = library()
+        .par_iter()
+        .flat_map_iter(|motor| {
+            let laws = ["pdcc", "pi-pwm"].into_iter();
+            laws.flat_map(|law| wrong_speeds(motor.name, law))
+        })
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
