@@ -128,6 +128,10 @@ pub struct Judgement {
     /// Greatest current returned to it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_current_limit_a: Option<f64>,
+    /// Current that the demanded torque returns to the bus in braking at rated speed, ampere, where the drive does not
+    /// measure its voltage; none where the windings take all of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unwatched_return_a: Option<f64>,
     /// Voltages of a measured bus at which the drive trips and its braking fades, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bus_levels: Option<String>,
@@ -190,6 +194,7 @@ impl Judgement {
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
             return_current_limit_a: inverter.bus_currents.returned,
+            unwatched_return_a: unwatched_return(drive, &points),
             bus_levels: bus_levels(drive, [emf_bus_v, rpm(emf_bus_v / per_speed)]),
             chosen: chosen(drive),
             points,
@@ -213,7 +218,12 @@ impl Judgement {
         });
         let limits: Vec<String> = limits.collect();
         let currents = (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")));
-        let parts = currents.into_iter().chain(self.bus_levels.clone());
+        let unwatched = self.unwatched_return_a.map(|returned| {
+            let returned = significant(returned, 2);
+            format!("bus voltage not watched; braking returns up to {returned} A")
+        });
+        let levels = unwatched.or_else(|| self.bus_levels.clone());
+        let parts = currents.into_iter().chain(levels);
         let parts: Vec<String> = parts.collect();
         (!parts.is_empty()).then(|| parts.join("; "))
     }
@@ -437,6 +447,21 @@ const NEAR: f64 = 0.1;
 
 /// Where the drive trips by the voltage of a measured bus, and where its braking fades. Limits near the nominal voltage
 /// that nobody stated are told as such. `emf`: a voltage in volt, and the speed in rpm at which the EMF reaches it.
+/// Current that braking returns to a bus that is not measured, ampere, no more than its limit: the mechanical power less
+/// the loss, which motoring tells at the same torque and speed.
+fn unwatched_return(drive: &Prepared, points: &[Point]) -> Option<f64> {
+    let inverter = &drive.spec.inverter;
+    if matches!(inverter.bus, BusSource::Measured { .. }) {
+        return None;
+    }
+    let rated = points.get(SPEEDS.len() - 1)?;
+    let torque = rated.torque_pct? / 100.0 * drive.demand();
+    let mechanical = torque * drive.spec.motor.rated_speed / inverter.v_bus;
+    let returned = 2.0 * mechanical - rated.bus_current_a?;
+    let most = inverter.bus_currents.returned.unwrap_or(f64::INFINITY);
+    Some(returned.min(most)).filter(|returned| *returned > 0.0)
+}
+
 fn bus_levels(drive: &Prepared, emf: [f64; 2]) -> Option<String> {
     let inverter = &drive.spec.inverter;
     let BusSource::Measured {

@@ -1,5 +1,8 @@
 //! The study of faults: classes behave as physics and the supervisor's rules say.
 
+mod encoder;
+
+use encoder::with_encoder;
 use hexagen_lab::closed_loop::Cause;
 use hexagen_lab::engine::{Model, MotorSource, PlantOptions, Prepared, prepare};
 use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, classes, study};
@@ -155,6 +158,17 @@ fn a_blocked_shaft_is_noticed_where_stalls_are_watched() {
     let after = row.after_ms.expect("trips");
     // The last edge came up to a sector before the shaft was blocked.
     assert!((140.0..=150.1).contains(&after), "{after}");
+}
+
+/// An angle that stays shows as a rotor that stays, though the shaft turns on.
+#[test]
+fn an_angle_that_stays_is_noticed_where_stalls_are_watched() {
+    let mut source = with_encoder("trivedi-keshri-660w", 4);
+    let stall = "[inverter]\nstall_timeout = \"1 s\"\n";
+    source.text = source.text.replacen("[inverter]\n", stall, 1);
+    let drive = prepare(&source, Some("pdcc")).expect("generates");
+    let study = studied(&drive);
+    assert_trips(row(&study, "angle stuck"), Cause::Stall);
 }
 
 #[test]

@@ -50,6 +50,30 @@ pub fn least_held(spec: &Spec, speed: SpeedLoop) -> Option<f64> {
     has_halls.then(|| speed.least_speed(spec.motor.pole_pairs) * 60.0 / TAU)
 }
 
+/// What is told of a mean bus current beyond its limit: behind a step of the set-point the limit takes the torque back
+/// over many periods.
+pub fn beyond_limit(inverter: &InverterSpec, bus_current: f64) -> Option<String> {
+    let limits = [
+        (
+            "bus_current_limit",
+            inverter.bus_currents.drawn,
+            bus_current,
+        ),
+        (
+            "return_current_limit",
+            inverter.bus_currents.returned,
+            -bus_current,
+        ),
+    ];
+    limits.into_iter().find_map(|(name, limit, current)| {
+        let limit = limit.filter(|limit| current > 1.02 * limit)?;
+        Some(format!(
+            "the bus current is above `{name}` of {} still: behind a step of the set-point the drive takes the torque back over many control periods, as --csv shows; a `slew_rate` keeps it from being exceeded",
+            engineering(limit, "A")
+        ))
+    })
+}
+
 fn of_current(
     inverter: &InverterSpec,
     is_motoring: bool,

@@ -1,6 +1,6 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
-use super::cut::{cut_by, least_held};
+use super::cut::{beyond_limit, cut_by, least_held};
 use super::ran::Ran;
 use crate::cli::{
     self, Failure, PlantArguments, RunArguments, note, paragraph, parse_rpm, parse_speed,
@@ -270,6 +270,11 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         note(
             "--load opposes the motion and does not drive the shaft: that the speed stays 0 says nothing of a slope",
         );
+    }
+    let bus_current = outcome.figures.bus_current_a;
+    if let Some(text) = bus_current.and_then(|current| beyond_limit(&drive.spec.inverter, current))
+    {
+        note(&text);
     }
     let plant = deviations.plant(&drive)?;
     if let Some(text) = braked(&drive, &plant, &run, options, &outcome)? {

@@ -494,7 +494,7 @@ fn a_speed_loop_that_does_not_settle_says_so() {
     assert!(
         stalled
             .stderr
-            .contains("no Hall edge came within the stall time-out"),
+            .contains("did not turn on within the stall time-out"),
         "{}",
         stalled.stderr
     );

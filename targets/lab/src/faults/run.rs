@@ -1,7 +1,7 @@
 //! One run: settling, the instant at which something breaks, and what follows.
 
 use super::class::FaultClass;
-use super::defect::Defect;
+use super::defect::{Defect, SignalDefect};
 use super::signals::Signals;
 use crate::LabError;
 use crate::closed_loop::{ClosedLoop, CurrentLoop, Recorder, RunOptions, Step, Trip};
@@ -29,7 +29,7 @@ const TURNS_AFTER: f64 = 3.0;
 /// Most of it in control periods, for motors that turn slowly.
 const MOST_AFTER: f64 = 20_000.0;
 
-/// Time over the stall time-out that a blocked shaft is watched for.
+/// Time over the stall time-out that a shaft or an angle that stays is watched for.
 const STALL_MARGIN: f64 = 1.2;
 
 /// Speed and torque of a run.
@@ -189,7 +189,10 @@ impl<'d> Bench<'d> {
         let turn = TAU / (run.omega_m.abs() * f64::from(pole_pairs));
         let periods = (AFTER.max(TURNS_AFTER * turn) / t_s).min(MOST_AFTER);
         let stall = STALL_MARGIN * f64::from(self.drive.spec.inverter.stall_periods);
-        let stands = defect == Defect::Shaft { factor: 0.0 };
+        let stands = matches!(
+            defect,
+            Defect::Shaft { factor: 0.0 } | Defect::Signal(SignalDefect::AngleStuck)
+        );
         let periods = if stands { periods.max(stall) } else { periods };
         periods.ceil() as usize
     }
