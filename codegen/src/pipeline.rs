@@ -130,7 +130,9 @@ fn warn_of_time(time: &StepTime, origins: &Origins) -> Option<Diagnostic> {
 
 /// Warns of a step that fits in Rust and may take longer than the control period in C.
 pub fn warning_in_c(origins: &Origins, times: &[StepTime]) -> Option<Diagnostic> {
-    let time = times.iter().find(|time| time.is_too_long_in_c_only())?;
+    let time = times
+        .iter()
+        .find(|time| time.is_named && time.is_too_long_in_c_only())?;
     let step = long_step(time, origins);
     Some(catalogue::step_exceeds_period_in_c(
         origins.at(TARGET),

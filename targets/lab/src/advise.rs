@@ -15,6 +15,7 @@ use crate::judgement::Judgement;
 use crate::period::long_period;
 use crate::plant::PlantParams;
 use crate::robustness::measured;
+use crate::times::longer_in_c;
 use crate::{LabError, Progress};
 use hexagen_codegen::diagnostics::{Code, engineering};
 use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
@@ -247,6 +248,9 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
     advice.whole_vectors = whole_vectors(&prepared, &advice.tried);
     if let Some(Ok(drive)) = advice.recommended.map(|k| prepared[k].1.as_ref()) {
         advice.ripples = Judgement::of(drive)?.ripples(&drive.spec);
+        if let Some(text) = longer_in_c(&drive.generated.interface.times) {
+            let _ = write!(advice.reason, "; {text}");
+        }
     }
     if advice.tried.first().is_some_and(|default| default.overruns) {
         advice.reason.push_str(

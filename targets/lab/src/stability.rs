@@ -96,18 +96,19 @@ pub fn run_off(
     Ok(found.judged(&found))
 }
 
-/// The stable range of a loop with an estimated EMF, and runs on both sides of its edges; `None`
-/// for other loops.
+/// The stable range of a linear loop, and with an estimated EMF, whose range is narrow, runs on both sides of its edges;
+/// `None` for other loops.
 ///
 /// # Errors
 /// A plant parameter out of range.
 pub fn checked(drive: &Prepared) -> Result<Option<Stability>, LabError> {
-    if drive.spec.controller.common().emf != EmfSource::Estimated {
-        return Ok(None);
-    }
     let Some(range) = stable_range(&drive.spec) else {
         return Ok(None);
     };
+    if drive.spec.controller.common().emf != EmfSource::Estimated {
+        let checks = vec![];
+        return Ok(Some(Stability { range, checks }));
+    }
     let inductances = factors(range.inductance);
     let resistances = factors(range.resistance);
     let runs: Vec<(Parameter, f64)> = inductances

@@ -68,6 +68,23 @@ pub fn sentence(times: &[StepTime]) -> String {
     )
 }
 
+/// What is told of a step that fits in Rust and may take longer than the control period in C: on the core that is named,
+/// else on that of [`sentence`].
+pub fn longer_in_c(times: &[StepTime]) -> Option<String> {
+    let time = times.first().filter(|time| time.is_too_long_in_c_only())?;
+    Some(format!(
+        "in C the longest step takes {} % of the control period {} {} at {}: raise `pwm_per_control`",
+        time.percent_of_period(time.most_cycles_in_c() as u32),
+        if time.is_named {
+            "on the"
+        } else {
+            "if the core is a"
+        },
+        time.chip.core,
+        engineering(time.clock, "Hz"),
+    ))
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Time, sentence};

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum as _};
 use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::emit::gappa::emit_gappa;
 use hexagen_lab::engine::Prepared;
+use hexagen_lab::times::longer_in_c;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -37,6 +38,10 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     tell_warnings(&drive);
     if let (Emit::C99 | Emit::Datasheet, Some(text)) = (options.emit, &drive.warning_in_c) {
         note(text);
+    } else if let (Emit::C99, Some(text)) =
+        (options.emit, longer_in_c(&drive.generated.interface.times))
+    {
+        note(&text);
     }
     let files = files_of(&drive, options.emit);
     if options.json {

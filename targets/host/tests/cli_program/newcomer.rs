@@ -443,6 +443,12 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
     assert!(!checked.contains("HX0614"), "{checked}");
     let fast = "pdcc:target=cortex_m4,core_clock=170MHz";
     assert!(!of("c99", fast).contains("in C a step"));
+    // Where nobody names the core, that of `check` is named.
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let out = out.path().to_str().expect("a path");
+    let told = run(["generate", "hurst-long", "--emit", "c99", "--out", out]).stderr;
+    let longest = "in C the longest step takes 102 % of the control period if the core is a Cortex-M4 at 170 MHz";
+    assert!(told.contains(longest), "{told}");
 }
 
 /// A motor whose stated limits of the bus current end its torque at rated speed, and whose EMF exceeds an empty battery.

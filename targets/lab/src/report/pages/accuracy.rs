@@ -177,7 +177,14 @@ fn figures_of_merit(data: &Results) -> Vec<Block> {
          count can lead to another trajectory.)",
         100.0 * RELATIVE
     );
-    let mut blocks = vec![Block::Prose(how), Block::Table(figure_table(data, &shown))];
+    let meaning = "Tracking: root mean square of the current's distance from a quasi-square reference, whatever the drive's own is, so that a sine \
+                   is never near it. Commutation: mean time from a change of the sector until the outgoing phase carries no more current. \
+                   Saturated: periods whose command is on the edge of what the legs reach.";
+    let mut blocks = vec![
+        Block::Prose(how),
+        Block::Note(meaning.to_owned()),
+        Block::Table(figure_table(data, &shown)),
+    ];
     let choosing = data
         .variants
         .iter()

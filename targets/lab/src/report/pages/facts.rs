@@ -35,7 +35,7 @@ pub fn opening(data: &Results) -> Vec<Block> {
         let (steps, engine) = (grouped(check.steps), &check.engine);
         if check.mismatches == 0 && check.steps > 0 {
             format!(
-                "**Bit for bit verified:** {steps} steps of {engine} code equal the bit-true model in every output and state bit."
+                "**Bit for bit verified:** {steps} steps of {engine} code, all controllers of this page together, equal the bit-true model in every output and state bit."
             )
         } else {
             format!(

@@ -152,7 +152,9 @@ fn verified(data: &Results) -> String {
         .map_or_else(String::new, |check| {
             let (steps, engine) = (grouped(check.steps), &check.engine);
             match check.mismatches {
-                0 => format!("{steps} steps of {engine} code equal the bit-true model, every bit"),
+                0 => {
+                    format!("{steps} steps of {engine} code, all controllers of this page together, equal the bit-true model, every bit")
+                }
                 wrong => {
                     format!("NOT: {engine} code of {wrong} controllers differs from the model")
                 }
