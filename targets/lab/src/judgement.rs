@@ -218,12 +218,7 @@ impl Judgement {
         });
         let limits: Vec<String> = limits.collect();
         let currents = (!limits.is_empty()).then(|| format!("at most {}", limits.join(", ")));
-        let unwatched = self.unwatched_return_a.map(|returned| {
-            let returned = significant(returned, 2);
-            format!("bus voltage not watched; braking returns up to {returned} A")
-        });
-        let levels = unwatched.or_else(|| self.bus_levels.clone());
-        let parts = currents.into_iter().chain(levels);
+        let parts = currents.into_iter().chain(self.bus_levels.clone());
         let parts: Vec<String> = parts.collect();
         (!parts.is_empty()).then(|| parts.join("; "))
     }

@@ -773,5 +773,8 @@ fn the_bus_gives_the_power_of_shaft_and_windings() {
         );
     }
     let check = run(["check", PAPER]).stdout;
-    assert!(check.contains("; bus mean 16.44 A;"), "{check}");
+    assert!(
+        check.contains("; bus mean 16.44 A, in braking to -12 A;"),
+        "{check}"
+    );
 }

@@ -156,10 +156,15 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         .map(str::to_owned)
         .or_else(|| ended_by(judgement, drive));
     format!(
-        "rated speed takes {} (with L) of {reach}; {lasts} to {} rpm{}",
+        "rated speed takes {} (with L) of {reach}; {lasts} to {} rpm{}{}",
         engineering(judgement.rating_v, "V"),
         end.floor(),
         why.unwrap_or_default(),
+        if judgement.unwatched_return_a.is_some() {
+            "; not watched"
+        } else {
+            ""
+        },
     )
 }
 
@@ -174,8 +179,8 @@ fn ended_by(judgement: &Judgement, drive: &Prepared) -> Option<String> {
     is_limit.then(|| format!(" (by {most} of bus current)"))
 }
 
-/// The demanded torque's current beside the rated one, the mean that it draws from the bus at rated speed,
-/// and what the largest set-point gives beyond it.
+/// The demanded torque's current beside the rated one, the mean that it draws from the bus at rated speed
+/// and in braking returns to one that nobody watches, and what the largest set-point gives beyond it.
 fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec) -> String {
     let beyond = if judgement.greatest_torque_nm > MORE * judgement.torque_nm {
         format!(
@@ -210,7 +215,15 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     };
     let drawn = judgement.rated().and_then(|point| point.bus_current_a);
     let drawn = drawn.map_or(String::new(), |mean| {
-        format!("; bus mean {}", engineering(mean, "A"))
+        let returned = judgement.unwatched_return_a.map(|returned| {
+            let returned = significant(returned, 2);
+            format!(", in braking to -{returned} A")
+        });
+        format!(
+            "; bus mean {}{}",
+            engineering(mean, "A"),
+            returned.unwrap_or_default()
+        )
     });
     format!(
         "{} takes a peak of {}, {rated}{drawn}{beyond}; trips at {}",
