@@ -46,7 +46,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     for line in refusals(&advice) {
         print_text(&paragraph(&line))?;
     }
-    if let Some(text) = &advice.whole_vectors {
+    for text in &advice.far_off {
         print_text(&paragraph(text))?;
     }
     print_text(&paragraph(&verdict(&advice)))
