@@ -9,7 +9,7 @@ use super::field_rule::FieldRule;
 use super::value::{parse_value, plain_number, unreadable};
 use super::{load_motor_file, schema};
 use crate::diagnostics::{Anchors, Diagnostic, Diagnostics, Location, catalogue};
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Literal, Punct, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::path::Path;
 use syn::parse::{ParseStream, Parser};
@@ -169,6 +169,23 @@ fn entries(tokens: TokenStream) -> Vec<Entry> {
     parts
 }
 
+/// The entries of a section, each with what stands behind a comma inside its value: `0,5 ohm`, `a, b, c`.
+fn fields(tokens: TokenStream) -> Vec<Entry> {
+    let mut fields: Vec<Entry> = Vec::new();
+    for entry in entries(tokens) {
+        match (fields.last_mut(), entry.tokens.first()) {
+            (Some(before), Some(first)) if before.goes_on(&entry) => {
+                let mut comma = Punct::new(',', Spacing::Alone);
+                comma.set_span(first.span());
+                before.tokens.push(TokenTree::Punct(comma));
+                before.tokens.extend(entry.tokens);
+            }
+            _ => fields.push(entry),
+        }
+    }
+    fields
+}
+
 /// Takes the invisible groups away that `macro_rules!` puts around its fragments.
 fn flatten(tokens: TokenStream) -> Vec<TokenTree> {
     tokens
@@ -182,6 +199,12 @@ fn flatten(tokens: TokenStream) -> Vec<TokenTree> {
         .collect()
 }
 
+fn is_number(literal: &Literal) -> bool {
+    literal
+        .to_string()
+        .starts_with(|c: char| c.is_ascii_digit())
+}
+
 fn is_punct(token: &TokenTree, sign: char) -> bool {
     matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
 }
@@ -191,6 +214,22 @@ fn location(tokens: &[TokenTree]) -> Location {
 }
 
 impl Entry {
+    /// Whether the next entry is none but continues this one's value: a number behind a number, or behind a word one that
+    /// is no field's name.
+    fn goes_on(&self, next: &Self) -> bool {
+        let has_value = matches!(self.tokens.as_slice(), [TokenTree::Ident(_), colon, _, ..] if is_punct(colon, ':'));
+        has_value
+            && match (self.tokens.last(), next.tokens.as_slice()) {
+                (Some(TokenTree::Literal(before)), [TokenTree::Literal(behind), ..]) => {
+                    is_number(before) && is_number(behind)
+                }
+                (Some(TokenTree::Ident(_)), [TokenTree::Ident(word)]) => {
+                    schema::section_of(&word.to_string()).is_none()
+                }
+                _ => false,
+            }
+    }
+
     /// Name, its tokens and the value's tokens.
     fn split(&self) -> Result<(String, &[TokenTree], &[TokenTree]), Diagnostic> {
         let (name, value) = match self.tokens.as_slice() {
@@ -386,7 +425,7 @@ fn read_fields(
         return Err(twice(&at, section, name));
     }
     section.location = Some(at);
-    for entry in entries(tokens) {
+    for entry in fields(tokens) {
         match entry.split() {
             Ok((name, head, value)) => section.fields.push(Field {
                 value: read_value(schema::field(&name), value),
@@ -449,5 +488,5 @@ fn text_of(tokens: &[TokenTree]) -> String {
             other => other.to_string(),
         })
         .collect();
-    parts.join(" ")
+    parts.join(" ").replace(" , ", ", ")
 }

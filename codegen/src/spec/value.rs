@@ -168,7 +168,8 @@ fn without_comma(digits: &str, lexemes: &[Lexeme]) -> Option<Vec<String>> {
         return None;
     };
     let is_whole = |digits: &str| digits.bytes().all(|digit| digit.is_ascii_digit());
-    if !is_whole(digits.trim_start_matches('-')) || !is_whole(fraction) {
+    let is_list = unit.contains(&Lexeme::Symbol(','));
+    if is_list || !is_whole(digits.trim_start_matches('-')) || !is_whole(fraction) {
         return None;
     }
     let unit = spelt(unit);
@@ -270,7 +271,8 @@ fn read_unit(
         return Err(catalogue::voltage_at_speed(at, field.name, text, &meant));
     }
     if let Some(values) = without_comma(digits, lexemes) {
-        return Err(catalogue::decimal_comma(at, field.name, text, &values));
+        let given = text.replace(", ", ",");
+        return Err(catalogue::decimal_comma(at, field.name, &given, &values));
     }
     if let Some(signs) = stray_signs(lexemes) {
         let examples = field.examples(&named(lexemes));

@@ -206,6 +206,18 @@ fn a_drive_that_tripped_has_no_figures_and_no_plots() {
 }
 
 #[test]
+fn the_page_says_where_the_demand_is_limited() {
+    assert!(!PAGE.contains("limited to 3"));
+    let mut data = DATA.clone();
+    data.torque = 5.0;
+    let own = data.own.as_mut().expect("the motor file's own");
+    own.judgement.greatest_torque_nm = 3.5;
+    let page = render(&data);
+    let told = "5\u{a0}Nm, limited to 3.5\u{a0}Nm, demanded.";
+    assert!(page.contains(told));
+}
+
+#[test]
 fn the_page_says_which_torque_counts_as_held() {
     assert!(
         PAGE.contains("falls below 97\u{a0}% of the demand, as in the design document's table")

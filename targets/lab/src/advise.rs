@@ -168,8 +168,8 @@ pub struct Advice {
     pub reason: String,
     /// Ripple of that one, in the words of `check`, where `check` tells it.
     pub ripples: Option<String>,
-    /// Why variants of whole vectors ripple far more, if some do.
-    pub whole_vectors: Option<String>,
+    /// Why variants ripple far more, or make far less torque, where some do and the reason is known.
+    pub far_off: Vec<String>,
     /// Options of the motor's file that stay whatever the controller, with their values.
     pub kept: Vec<(String, String)>,
     /// Options of the motor's file that the other variants do without.
@@ -229,7 +229,7 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         recommended: None,
         reason: String::new(),
         ripples: None,
-        whole_vectors: None,
+        far_off: Vec::new(),
         kept: kept(motor)
             .map(|field| (field.name.clone(), field.value.to_string()))
             .collect(),
@@ -245,7 +245,11 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         advice.tried[k].limit_pct = limit;
     }
     advice.recommend(&mut left);
-    advice.whole_vectors = whole_vectors(&prepared, &advice.tried);
+    let reasons = [
+        whole_vectors(&prepared, &advice.tried),
+        without_integral(&advice.tried),
+    ];
+    advice.far_off = reasons.into_iter().flatten().collect();
     if let Some(Ok(drive)) = advice.recommended.map(|k| prepared[k].1.as_ref()) {
         advice.ripples = Judgement::of(drive)?.ripples(&drive.spec);
         if let Some(text) = longer_in_c(&drive.generated.interface.times) {
@@ -293,6 +297,21 @@ fn whole_vectors(drives: &[Drive], tried: &[Tried]) -> Option<String> {
         100.0 * stride / rated,
         names.join(", "),
     ))
+}
+
+/// Deviation of the torque from which on its reason is told, percent.
+const FAR_OFF: f64 = 10.0;
+
+/// Why the controller without an integral makes less torque, where that is much.
+fn without_integral(tried: &[Tried]) -> Option<String> {
+    let example = tried.iter().find(|tried| tried.is_example)?;
+    let worst = Worst::of(&example.nominal)?;
+    (worst.torque_pct < 100.0 - FAR_OFF).then(|| {
+        format!(
+            "{} has no integral: its current stays below the reference by the resistive drop over the gain.",
+            example.variant
+        )
+    })
 }
 
 /// What the default drive of a motor lacks of the best variant; none where it trips.
@@ -682,7 +701,7 @@ mod tests {
             recommended: None,
             reason: String::new(),
             ripples: None,
-            whole_vectors: None,
+            far_off: Vec::new(),
             kept: Vec::new(),
             left_out: Vec::new(),
         };

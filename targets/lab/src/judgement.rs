@@ -139,6 +139,9 @@ pub struct Judgement {
     pub chosen: Vec<Chosen>,
     /// Runs: slow, at rated speed, and there at the least bus voltage where `bus_min` is stated.
     pub points: Vec<Point>,
+    /// The run at a speed that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub asked: Option<Point>,
     /// Time of a step, by chip.
     pub step: Vec<Time>,
     /// Whether a step may take longer than the control period on the core that is named; the runs leave
@@ -198,12 +201,23 @@ impl Judgement {
             bus_levels: bus_levels(drive, [emf_bus_v, rpm(emf_bus_v / per_speed)]),
             chosen: chosen(drive),
             points,
+            asked: None,
             step: times.iter().map(Time::from).collect(),
             overruns: times.iter().any(StepTime::is_too_long),
             warnings: drive.warnings.clone(),
         };
         (judgement.works, judgement.verdict) = judgement.judge(drive);
         Ok(judgement)
+    }
+
+    /// Adds a run at a speed in rpm, on the nominal bus; it does not change the verdict.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn ask(&mut self, drive: &Prepared, rpm: f64) -> Result<(), PlantError> {
+        let omega_m = rpm * std::f64::consts::PI / 30.0;
+        self.asked = Some(at_speed(drive, omega_m, drive.spec.inverter.v_bus)?);
+        Ok(())
     }
 
     /// The limits of the bus current, where there are any.

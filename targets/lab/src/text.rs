@@ -39,6 +39,19 @@ pub fn quantity(value: f64, unit: &str) -> String {
     format!("{}\u{a0}{unit}", number.replace('-', "\u{2212}"))
 }
 
+/// A demand over what the drive allows from which on it is told as beyond.
+pub const BEYOND: f64 = 1.001;
+
+/// A torque that is demanded and, where the set-point's limit allows less, that: `5 Nm, limited to 3.6 Nm,`. Both in
+/// newton metres; `shown`: how a torque is printed.
+pub fn demanded(torque: f64, reach: f64, shown: impl Fn(f64) -> String) -> String {
+    if torque.abs() > reach * BEYOND {
+        format!("{}, limited to {},", shown(torque), shown(reach))
+    } else {
+        shown(torque)
+    }
+}
+
 /// A number with fixed decimals and a true minus sign; a dash for `None`.
 pub fn number(value: impl Into<Option<f64>>, decimals: usize) -> String {
     match value.into().filter(|value: &f64| value.is_finite()) {

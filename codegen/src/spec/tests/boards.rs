@@ -115,6 +115,45 @@ fn a_motor_file_stands_over_the_board_that_it_names() {
     );
 }
 
+/// Sensitivity and reference make one gain together: a call that states one of them keeps the other of its board, and a
+/// gain per count replaces both.
+#[test]
+fn a_call_replaces_a_sensitivity_or_its_reference_alone() {
+    let fields = ["adc_gain = \"66 mV/A\"\n", "adc_reference = \"3.3 V\"\n"];
+    let [sensor, reference] = fields;
+    for (name, stated) in [
+        ("sensor-first", [sensor, reference].concat()),
+        ("reference-first", [reference, sensor].concat()),
+    ] {
+        let board = BOARD.replace("adc_gain = \"29 mA/count\"\n", &stated);
+        let motor = MOTOR.replace("adc_range = \"40 A\"\n", "");
+        let folder = Folder::new(name, &motor, &board);
+        for (over, gain) in [
+            ("adc_reference: 5 V", 5.0 / 4096.0 / 0.066),
+            ("adc_gain: 60 mV/A", 3.3 / 4096.0 / 0.060),
+            (
+                "adc_reference: 5 V, adc_gain: 60 mV/A",
+                5.0 / 4096.0 / 0.060,
+            ),
+            (
+                "adc_gain: 60 mV/A, adc_reference: 5 V",
+                5.0 / 4096.0 / 0.060,
+            ),
+            ("adc_gain: 20 mA/count", 0.02),
+        ] {
+            let (checked, _) = folder.check(&format!(
+                r#"Rear {{ motor: "motors/hub.toml", board: "boards/mine.toml", inverter: {{ {over} }} }}"#
+            ));
+            let (spec, _) = checked.unwrap_or_else(|errors| panic!("{name}, {over}: {errors}"));
+            let found = spec.inverter.adc_gain;
+            assert!(
+                (found / gain - 1.0).abs() < 1e-12,
+                "{name}, {over}: {found}"
+            );
+        }
+    }
+}
+
 #[test]
 fn errors_point_into_the_board_s_file() {
     let board = BOARD

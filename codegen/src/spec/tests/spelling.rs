@@ -116,7 +116,7 @@ fn numbers_are_decimal() {
     }
     let told = in_macro("hall_codes: [0b001, 0b101, 4, 6, 2, 3], pole_pairs: 0xc");
     for text in [
-        "cannot read `[0b001 , 0b101 , 4 , 6 , 2 , 3]`",
+        "cannot read `[0b001, 0b101, 4, 6, 2, 3]`",
         "cannot read `0xc`",
     ] {
         assert!(told.contains(text), "{told}");

@@ -10,8 +10,8 @@ use hexagen_lab::counted::Figures;
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 /// What a drive's times are known by, and estimated from.
@@ -137,68 +137,65 @@ pub fn rises(of: &Counted) -> Vec<String> {
 /// # Errors
 /// If a fit fails, the file cannot be written, or rustfmt does not run.
 pub fn write(targets: &[Counted]) -> Result<(), BenchError> {
-    let mut text = "//! Written by `cargo xtask cost --accept`.\n\n\
-        use super::{Chip, Estimate, Times};\n\n"
-        .to_owned();
-    let mut chips = String::new();
-    for Counted {
-        target,
-        compiler,
-        drives,
-        in_c,
-    } in targets
-    {
-        let in_c = times(in_c.map(|ratio| format!("{ratio:?}")));
-        let chip = chip(*target);
-        let clocks = chip.clocks_of_waits.iter();
-        let clocks: Vec<String> = clocks.map(|clock| format!("{clock}e6")).collect();
-        let clocks = clocks.join(", ");
-        let fits = fits(drives)?;
-        let estimates = times(fits.map(|fit| {
-            let weights = fit.weights.map(number).join(", ");
-            let [error, without_learning] = [fit.error, fit.error_without_learning].map(number);
-            format!("Estimate::of([{weights}], {error}, {without_learning})")
-        }));
-        let mut counted = BTreeMap::<u64, Times<u32>>::new();
-        for drive in drives {
-            // Of drives with one specification the longer times.
-            let times = counted
-                .entry(drive.calibration.digest)
-                .or_insert(drive.times);
-            *times = times
-                .zip(drive.times)
-                .map(|(known, other)| known.max(other));
-        }
-        let counted = counted
-            .into_iter()
-            .fold(String::new(), |mut all, (digest, figures)| {
-                let groups =
-                    [48, 32, 16, 0].map(|shift| format!("{:04x}", digest >> shift & 0xffff));
-                let _ = write!(
-                    all,
-                    "(0x{}, {}),",
-                    groups.join("_"),
-                    times(figures.map(|figure| figure.to_string()))
-                );
-                all
-            });
-        let _ = write!(
-            chips,
-            "Chip {{ target: {:?}, core: {:?}, name: {:?}, clocks_of_waits: &[{}], assumed: {:?}, compiler: {compiler:?}, \
-             in_c: {in_c}, estimates: {estimates}, counted: &[{counted}] }},",
-            core(*target),
-            name(*target),
-            chip.name,
-            clocks,
-            chip.assumed,
-        );
-    }
-    let _ = write!(
-        text,
-        "pub static CHIPS: [Chip; {}] = [{chips}];",
-        targets.len()
+    let chips = targets.iter().map(chip_item);
+    let chips = chips.collect::<Result<Vec<_>, _>>()?;
+    let text = format!(
+        "//! Written by `cargo xtask cost --accept`.\n\n\
+         use super::{{Chip, Estimate, Times}};\n\n\
+         pub static CHIPS: [Chip; {}] = [{}];",
+        chips.len(),
+        chips.join(", ")
     );
-    let path = workspace().join("codegen/src/timing/figures.rs");
+    write_formatted(&workspace().join("codegen/src/timing/figures.rs"), &text)
+}
+
+/// Rust text of a chip with the figures of its drives.
+fn chip_item(of: &Counted) -> Result<String, BenchError> {
+    let chip = chip(of.target);
+    let clocks = chip.clocks_of_waits.iter();
+    let clocks: Vec<String> = clocks.map(|clock| format!("{clock}e6")).collect();
+    Ok(format!(
+        "Chip {{ target: {:?}, core: {:?}, name: {:?}, clocks_of_waits: &[{}], assumed: {:?}, compiler: {:?}, \
+         in_c: {}, estimates: {}, counted: &[{}] }}",
+        core(of.target),
+        name(of.target),
+        chip.name,
+        clocks.join(", "),
+        chip.assumed,
+        of.compiler,
+        times(of.in_c.map(|ratio| format!("{ratio:?}"))),
+        times(fits(&of.drives)?.map(estimate)),
+        counted_items(&of.drives),
+    ))
+}
+
+fn estimate(fit: Fit) -> String {
+    let weights = fit.weights.map(number).join(", ");
+    let [error, without_learning] = [fit.error, fit.error_without_learning].map(number);
+    format!("Estimate::of([{weights}], {error}, {without_learning})")
+}
+
+/// The times of each specification; of drives with one specification the longer.
+fn counted_items(drives: &[Drive]) -> String {
+    let mut counted = BTreeMap::<u64, Times<u32>>::new();
+    for drive in drives {
+        let times = counted
+            .entry(drive.calibration.digest)
+            .or_insert(drive.times);
+        *times = times
+            .zip(drive.times)
+            .map(|(known, other)| known.max(other));
+    }
+    let items = counted.into_iter().map(|(digest, figures)| {
+        let groups = [48, 32, 16, 0].map(|shift| format!("{:04x}", digest >> shift & 0xffff));
+        let figures = times(figures.map(|figure| figure.to_string()));
+        format!("(0x{}, {figures})", groups.join("_"))
+    });
+    items.collect::<Vec<_>>().join(", ")
+}
+
+/// Writes a Rust file in the format of rustfmt, whole or not at all.
+fn write_formatted(path: &Path, text: &str) -> Result<(), BenchError> {
     let new = path.with_extension("new");
     fs::write(&new, text)?;
     let formatted = Command::new("rustfmt")

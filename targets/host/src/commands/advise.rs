@@ -38,15 +38,15 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let speeds = SPEEDS.map(|share| share.to_string()).join(", ");
     print_text(&paragraph(&format!(
         "Torque: of the rated {}, or of what a stated limit of the bus current leaves of it (the percentages of `check` and `report` are of what `max_current` allows), at {speeds} % of rated speed, the worst of \
-         them; then at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3, k_b x 1.1 and the bus 15 % low, each alone. Copper loss and \
-         switching at rated speed. Holds to: speed up to which those that are alike else hold the torque. Cycles: at most, on the core \
+         them. Varied: at {DEVIATING_AT} % with R x 1.4, L x 0.75, L x 1.3, k_b x 1.1 and the bus 15 % low, each alone. Copper: the \
+         loss in the windings, and switch: turn-ons of a switch, both at rated speed. Holds to: speed up to which those that are alike else hold the torque. Cycles: of the longest step, on the core \
          that is named or assumed.",
         engineering(advice.rated_torque_nm, "Nm"),
     )))?;
     for line in refusals(&advice) {
         print_text(&paragraph(&line))?;
     }
-    if let Some(text) = &advice.whole_vectors {
+    for text in &advice.far_off {
         print_text(&paragraph(text))?;
     }
     print_text(&paragraph(&verdict(&advice)))
@@ -120,12 +120,12 @@ fn table(advice: &Advice) -> Table {
     let numbers = [
         "torque %",
         "ripple %",
-        "deviating torque %",
-        "ripple %",
+        "varied torque %",
+        "varied ripple %",
         "copper W",
-        "switching kHz",
+        "switch kHz",
         "holds to %",
-        "longest step, cycles",
+        "cycles",
     ];
     let numbers = numbers.map(|name| Column::number(name, ""));
     let columns = [Column::text("controller")].into_iter().chain(numbers);

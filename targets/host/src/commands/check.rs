@@ -6,12 +6,14 @@
 mod text;
 
 use crate::cli::{
-    DriveArguments, Failure, note, print_json, print_verdict, tell_warnings, verdict_lines,
+    DriveArguments, Failure, note, parse_rpm, print_json, print_verdict, tell_warnings,
+    verdict_lines,
 };
 use clap::Args;
 use hexagen_codegen::timing::long_products;
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::Judgement;
+use std::f64::consts::TAU;
 
 /// Options of `check`.
 #[derive(Args, Clone, Debug)]
@@ -19,6 +21,9 @@ pub struct Options {
     /// What is checked.
     #[command(flatten)]
     pub drive: DriveArguments,
+    /// Run it at this mechanical speed in rpm, too; negative is backward
+    #[arg(long, value_name = "RPM", value_parser = parse_rpm, allow_hyphen_values = true)]
+    pub rpm: Option<f64>,
     /// Say why each option was chosen that the file leaves out
     #[arg(long)]
     pub reasons: bool,
@@ -38,13 +43,20 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     let asked = &options.drive;
     let motor = asked.select()?;
     let drive = motor.prepare_for_torque(asked.controller.as_deref())?;
-    let judgement = Judgement::of(&drive)?;
+    let mut judgement = Judgement::of(&drive)?;
+    if let Some(rpm) = options.rpm {
+        check_speed(&drive, rpm)?;
+        judgement.ask(&drive, rpm)?;
+    }
     if options.json {
         print_json(&judgement)?;
     } else {
         tell_warnings(&drive);
         if let Some(core) = of_core(&drive) {
             note(&format!("the board's chip: {core}"));
+        }
+        if let Some(text) = text::stated_torque(&drive.spec.motor) {
+            note(&text);
         }
         let assumed = motor.assumed();
         if !assumed.is_empty() {
@@ -57,6 +69,30 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     judgement
         .failure()
         .map_or(Ok(()), |error| Err(Failure::Check(error)))
+}
+
+/// Least speed of a run over the rated one: an electrical turn of a slower one takes long to simulate.
+const LEAST_SPEED: f64 = 0.01;
+
+/// Checks that the drive follows the rotor at a speed.
+fn check_speed(drive: &Prepared, rpm: f64) -> Result<(), Failure> {
+    let of = |omega_m: f64| omega_m * 60.0 / TAU;
+    let most = of(drive.spec.inverter.maximum_speed);
+    let least = of(drive.spec.inverter.minimum_speed).max(LEAST_SPEED * drive.rated_rpm());
+    let text = if rpm.abs() > most * (1.0 + 1e-9) {
+        format!(
+            "beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor; give at most {} rpm",
+            most.floor()
+        )
+    } else if rpm.abs() < least * (1.0 - 1e-9) {
+        format!(
+            "slower than this command runs a drive; give at least {} rpm, or take `hexagen simulate`",
+            least.ceil()
+        )
+    } else {
+        return Ok(());
+    };
+    Err(Failure::Argument(format!("--rpm {rpm}: {text}")))
 }
 
 /// Cycles that a long product takes more on a Cortex-M3 than on a Cortex-M4, at most.
@@ -76,14 +112,12 @@ fn of_core(drive: &Prepared) -> Option<String> {
     ))
 }
 
-/// The verdict and its rows in so many lines; without the last row, the next command, where two lines of verdict leave
-/// no room for it.
+/// The verdict and its rows in so many lines; without the last row, the next command, where the others need its room.
 fn within(head: &str, rows: &[(&str, String)], most: usize) -> Vec<String> {
-    const REST: &str = "with --all";
-    let lines = verdict_lines(head, rows, most, REST);
+    let lines = verdict_lines(head, rows, usize::MAX, "");
     let count: usize = lines.iter().map(|row| row.lines().count()).sum();
     match rows.split_last() {
-        Some((_, others)) if count > most => verdict_lines(head, others, most, REST),
+        Some((_, others)) if count > most => verdict_lines(head, others, most, "with --all"),
         _ => lines,
     }
 }

@@ -17,7 +17,7 @@ use hexagen_lab::engine::{Prepared, run_of};
 use hexagen_lab::envelope::envelope_on;
 use hexagen_lab::plant::PlantParams;
 use hexagen_lab::report::Table;
-use hexagen_lab::text::significant;
+use hexagen_lab::text::{BEYOND, demanded, significant};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -336,9 +336,6 @@ fn of_speed(set: f64, outcome: &Outcome, drive: &Prepared) -> String {
     format!("; if the bus and `maximum_speed` allow that speed, {more} or lower the load")
 }
 
-/// A demand over the envelope's torque from which on it is beyond the envelope.
-const BEYOND: f64 = 1.001;
-
 /// Torque against the demand that counts as braking, over the rated one.
 const BRAKES: f64 = 0.01;
 
@@ -463,13 +460,9 @@ fn print_table(outcome: &Outcome, drive: &Prepared) -> Result<(), Failure> {
     let asked = if outcome.speed.is_some_and(|speed| speed.set_rpm.is_some()) {
         format!("from {} rpm with at most {torque} Nm", outcome.rpm)
     } else {
-        let reach = drive.reach();
-        let limited = if outcome.torque_nm.abs() > reach * BEYOND {
-            format!(", limited to {} Nm,", significant(reach, 4))
-        } else {
-            String::new()
-        };
-        format!("{torque} Nm{limited} at {} rpm", outcome.rpm)
+        let shown = |torque| format!("{} Nm", significant(torque, 4));
+        let asked = demanded(outcome.torque_nm, drive.reach(), shown);
+        format!("{asked} at {} rpm", outcome.rpm)
     };
     print_text(&paragraph(&format!(
         "{}, {} ({}{engine}): {asked}",

@@ -1,6 +1,6 @@
 //! `hexagen verify`: generated code against the bit-true reference, on every output and state bit.
 
-use crate::cli::{Bar, Failure, Selection, print_json, print_table, warn};
+use crate::cli::{Bar, Failure, Selection, paragraph, print_json, print_table, print_text, warn};
 use crate::commands::selected::{Refused, select};
 use clap::{Args, ValueEnum};
 use hexagen_lab::engine::{BuildError, Prepared, Verifier};
@@ -118,32 +118,32 @@ pub fn run(options: &Options) -> Result<(), Failure> {
             refused,
         })?;
     } else {
-        print_table(&table(&results))?;
+        print_table(&results_table(&results))?;
+        print_text("")?;
+        print_table(&coverage_table(&results))?;
+        print_text(&paragraph(
+            "Shares of the steps: in control; of those, limited to the voltage of the bus, and beyond its reach along the EMF; \
+             in a commutation of phases; with an angle between Hall edges, and of these backward. Start: calibration, pre-charge and \
+             the wait for the rotor's angle.",
+        ))?;
     }
     outcome
 }
 
-fn table(results: &[Checked]) -> Table {
+fn results_table(results: &[Checked]) -> Table {
+    let texts = ["motor", "controller", "engine"];
     let mut table = Table::listed(
-        ["motor", "controller", "engine"],
+        texts,
         [
             "steps",
             "result",
-            "Msteps/s/core",
-            "control %",
-            "limited %",
-            "saturated %",
-            "commutating %",
-            "angle %",
-            "backward %",
-            "start-up %",
+            "Msteps/s a core",
+            "in control %",
             "tripped %",
         ],
     );
     for checked in results {
         let coverage = &checked.coverage;
-        let share =
-            |count: u64| format!("{:.1}", 100.0 * count as f64 / checked.steps.max(1) as f64);
         table.row([
             checked.motor.clone(),
             checked.controller.clone(),
@@ -151,15 +151,44 @@ fn table(results: &[Checked]) -> Table {
             checked.steps.to_string(),
             if checked.passed { "equal" } else { "DIFFERENT" }.to_owned(),
             significant(checked.steps_per_second * 1e-6, 3),
-            share(coverage.running),
-            share(coverage.limited),
-            share(coverage.past_reach),
-            share(coverage.commutating),
-            share(coverage.timed),
-            share(coverage.backward),
-            share(coverage.calibrating + coverage.precharging + coverage.starting),
-            share(coverage.tripped),
+            share(checked, coverage.running),
+            share(checked, coverage.tripped),
         ]);
     }
     table
+}
+
+/// What else the steps were, percent of them.
+fn coverage_table(results: &[Checked]) -> Table {
+    let shares = [
+        "limited %",
+        "beyond reach %",
+        "commutating %",
+        "angle %",
+        "backward %",
+        "start %",
+    ];
+    let mut table = Table::listed(["motor", "controller"], shares);
+    for checked in results {
+        let coverage = &checked.coverage;
+        table.row([
+            checked.motor.clone(),
+            checked.controller.clone(),
+            share(checked, coverage.limited),
+            share(checked, coverage.past_reach),
+            share(checked, coverage.commutating),
+            share(checked, coverage.timed),
+            share(checked, coverage.backward),
+            share(
+                checked,
+                coverage.calibrating + coverage.precharging + coverage.starting,
+            ),
+        ]);
+    }
+    table
+}
+
+/// A count of steps over all of them, percent.
+fn share(checked: &Checked, count: u64) -> String {
+    format!("{:.1}", 100.0 * count as f64 / checked.steps.max(1) as f64)
 }

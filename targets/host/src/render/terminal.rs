@@ -1,17 +1,14 @@
 //! Pages, parts of them and tables as plain text; tables in Markdown, coloured where a terminal
 //! shows it.
 
-use super::lines::paragraph;
+use super::lines::{COLUMNS, paragraph};
 use anstream::{AutoStream, ColorChoice};
 use comfy_table::presets::ASCII_MARKDOWN;
-use comfy_table::{CellAlignment, Color, ColumnConstraint, ContentArrangement, Row, Width};
+use comfy_table::{CellAlignment, Color, ColumnConstraint, ContentArrangement, Width};
 use hexagen_lab::report::{Block, Cell, Column, Group, Key, Label, Sign, Table, Tone, plain};
 
-/// Columns of a line; a table that is wider breaks the texts in its cells.
-const COLUMNS: u16 = 100;
-
 /// Spaces beside a cell's text.
-const PADDING: u16 = 2;
+const PADDING: usize = 2;
 
 /// Blocks one after another; figures are represented by their captions.
 pub fn text(blocks: &[Block]) -> String {
@@ -81,72 +78,121 @@ pub fn is_coloured() -> bool {
     AutoStream::choice(&std::io::stdout()) != ColorChoice::Never
 }
 
-/// A table in Markdown, with the first line of each cell only.
+/// A table in Markdown, with the first line of each cell only. One that is too wide for a line is drawn in parts
+/// below each other, which all begin with the table's first columns of texts.
 pub fn table(table: &Table) -> String {
+    let rows: Vec<Vec<Cell>> = table.groups.iter().flat_map(rows).collect();
+    let of = |(place, column)| Drawn::of(place, column, &rows);
+    let columns: Vec<Drawn> = table.columns.iter().enumerate().map(of).collect();
+    let parts = parts(&columns);
+    let parts = parts.iter().map(|part| part_of(part, &rows));
+    parts.collect::<Vec<_>>().join("\n\n")
+}
+
+/// A column and the characters of its lines.
+#[derive(Clone)]
+struct Drawn {
+    /// Its number in the table.
+    place: usize,
+    heading: String,
+    is_number: bool,
+    /// Characters of its longest word or, of numbers, which stay whole, its longest cell.
+    least: usize,
+    /// Characters of its longest line.
+    whole: usize,
+}
+
+impl Drawn {
+    fn of(place: usize, column: &Column, rows: &[Vec<Cell>]) -> Self {
+        let characters = |text: &str| text.chars().count();
+        let cells = rows.iter().filter_map(|row| row.get(place)).map(shown);
+        let cells: Vec<String> = cells.collect();
+        let longest_cell = cells.iter().map(|cell| characters(cell)).max();
+        let heading = heading(column);
+        let words = heading.split_whitespace();
+        let head = words.map(characters).max();
+        let of_cells = if column.is_number {
+            longest_cell
+        } else {
+            let words = cells.iter().flat_map(|cell| cell.split_whitespace());
+            words.map(characters).max()
+        };
+        let whole = heading.lines().map(characters).max().max(longest_cell);
+        Self {
+            place,
+            is_number: column.is_number,
+            least: of_cells.max(head).unwrap_or(0),
+            whole: whole.unwrap_or(0),
+            heading,
+        }
+    }
+}
+
+/// Characters of a line with columns of these widths.
+fn line(widths: impl Iterator<Item = usize>) -> usize {
+    widths.map(|width| width + PADDING + 1).sum::<usize>() + 1
+}
+
+/// The columns of each part of a table: as many as a line holds.
+fn parts(columns: &[Drawn]) -> Vec<Vec<Drawn>> {
+    let (texts, others) = columns.split_at(columns.iter().take_while(|of| !of.is_number).count());
+    let mut parts = vec![texts.to_vec()];
+    for column in others {
+        let is_begun = parts.last().is_some_and(|part| part.len() > texts.len());
+        let with = |part: &Vec<Drawn>| line(part.iter().chain([column]).map(|of| of.least));
+        if is_begun && parts.last().is_some_and(|part| with(part) > COLUMNS) {
+            parts.push(texts.to_vec());
+        }
+        parts
+            .last_mut()
+            .expect("begins with one")
+            .push(column.clone());
+    }
+    parts
+}
+
+/// Some columns of rows.
+fn part_of(columns: &[Drawn], rows: &[Vec<Cell>]) -> String {
     let mut drawn = comfy_table::Table::new();
     drawn.load_style(ASCII_MARKDOWN);
     drawn.set_content_arrangement(ContentArrangement::Dynamic);
-    drawn.set_width(COLUMNS);
+    drawn.set_width(width(COLUMNS));
     if is_coloured() {
         drawn.enforce_styling();
     } else {
         drawn.force_no_tty();
     }
-    drawn.set_header(table.columns.iter().map(heading).collect::<Vec<_>>());
-    for row in table.groups.iter().flat_map(rows) {
-        drawn.add_row(row.iter().map(painted));
+    drawn.set_header(columns.iter().map(|column| &column.heading));
+    for row in rows {
+        let cells = columns.iter().map(|column| row.get(column.place));
+        drawn.add_row(cells.map(|cell| painted(&cell.cloned().unwrap_or_default())));
     }
-    let bounds = bounds(&drawn, &table.columns);
-    for ((place, column), of) in drawn.column_iter_mut().enumerate().zip(&table.columns) {
-        if let Some(bound) = bounds.get(place) {
-            column.set_constraint(*bound);
+    let breaks = line(columns.iter().map(|column| column.whole)) > COLUMNS;
+    let has_room = line(columns.iter().map(|column| column.least)) <= COLUMNS;
+    for (drawn, column) in drawn.column_iter_mut().zip(columns) {
+        if breaks && (has_room || column.is_number) {
+            drawn.set_constraint(bound(column));
         }
-        if of.is_number {
-            column.set_cell_alignment(CellAlignment::Right);
+        if column.is_number {
+            drawn.set_cell_alignment(CellAlignment::Right);
         }
     }
     drawn.trim_fmt()
 }
 
-/// Bounds of the columns where the table is wider than a line: numbers stay whole below a heading that
-/// breaks, and of texts the words.
-fn bounds(drawn: &comfy_table::Table, columns: &[Column]) -> Vec<ColumnConstraint> {
-    let widths = drawn.column_max_content_widths();
-    let whole: u16 = widths.iter().map(|width| width + PADDING + 1).sum();
-    if whole < COLUMNS {
-        return Vec::new();
+/// The bound of a column whose table is wider than a line: numbers stay whole below a heading that breaks, and of texts
+/// the words.
+fn bound(column: &Drawn) -> ColumnConstraint {
+    let least = Width::Fixed(width(column.least + PADDING));
+    if column.is_number {
+        ColumnConstraint::Absolute(least)
+    } else {
+        ColumnConstraint::LowerBoundary(least)
     }
-    let column = |(place, of): (usize, &Column)| {
-        let head = longest_word(drawn.header().into_iter(), place);
-        if of.is_number {
-            let cells = drawn
-                .row_iter()
-                .filter_map(|row| row.cell_iter().nth(place));
-            let cells = cells.map(|cell| cell.content().chars().count());
-            ColumnConstraint::Absolute(wide(cells.max().max(head)))
-        } else {
-            let cells = longest_word(drawn.row_iter(), place);
-            ColumnConstraint::LowerBoundary(wide(cells.max(head)))
-        }
-    };
-    columns.iter().enumerate().map(column).collect()
 }
 
-/// The longest word of a column in rows.
-fn longest_word<'a>(rows: impl Iterator<Item = &'a Row>, place: usize) -> Option<usize> {
-    let words = rows.filter_map(|row| {
-        let text = row.cell_iter().nth(place)?.content();
-        text.split_whitespace()
-            .map(|word| word.chars().count())
-            .max()
-    });
-    words.max()
-}
-
-/// The width of a column for so many characters.
-fn wide(characters: Option<usize>) -> Width {
-    let characters = u16::try_from(characters.unwrap_or(0)).unwrap_or(COLUMNS);
-    Width::Fixed(characters + PADDING)
+fn width(characters: usize) -> u16 {
+    u16::try_from(characters).unwrap_or(u16::MAX)
 }
 
 /// The name of a column below that of its group; variants break after their commas.
@@ -189,14 +235,20 @@ fn spread(row: &[Cell]) -> Vec<Cell> {
     cells.collect()
 }
 
+/// A cell in plain characters, its detail in parentheses unless that stands on a further line.
+fn shown(cell: &Cell) -> String {
+    let text = typed(&cell.text);
+    if cell.detail.is_empty() || cell.detail.starts_with('\n') {
+        text
+    } else {
+        format!("{text} ({})", typed(&cell.detail))
+    }
+}
+
 /// The cell's text on the ground of its tone, in the 256 colours of terminals; pale ones bear dark
 /// ink.
 fn painted(cell: &Cell) -> comfy_table::Cell {
-    let mut text = typed(&cell.text);
-    if !cell.detail.is_empty() && !cell.detail.starts_with('\n') {
-        text = format!("{text} ({})", typed(&cell.detail));
-    }
-    let drawn = comfy_table::Cell::new(text);
+    let drawn = comfy_table::Cell::new(shown(cell));
     let (ground, ink) = match cell.tone {
         Tone::None | Tone::Good | Tone::Missed | Tone::Muted => return drawn,
         Tone::Slight => (230, 16),
@@ -259,5 +311,46 @@ mod tests {
         let words = found.split([' ', '|']).filter(|word| *word == "word");
         assert_eq!(words.count(), 30, "{found}");
         assert!(found.contains(" 123456 |"), "{found}");
+    }
+
+    #[test]
+    fn a_table_of_many_numbers_is_drawn_in_parts_of_a_line() {
+        let numbers = ["speed", "torque", "current", "losses"];
+        let mut many = Table::listed(["motor"], numbers);
+        let number = "1".repeat(40);
+        many.row(["hub", &number, &number, &number, "2"]);
+        // Fewer cells than columns.
+        many.row(["wheel", "refused"]);
+        let found = table(&many);
+        assert!(
+            found.lines().all(|line| line.chars().count() <= 100),
+            "{found}"
+        );
+        let (first, second) = found.split_once("\n\n").expect("two parts");
+        for (part, names) in [(first, &numbers[..2]), (second, &numbers[2..])] {
+            let head = part.lines().next().expect("a heading");
+            let words: Vec<&str> = head
+                .split([' ', '|'])
+                .filter(|word| !word.is_empty())
+                .collect();
+            assert_eq!(words, [&["motor"], names].concat(), "{found}");
+            assert!(
+                part.contains("| hub ") && part.contains("| wheel "),
+                "{found}"
+            );
+        }
+        assert_eq!(found.matches(&number).count(), 3, "{found}");
+    }
+
+    #[test]
+    fn a_word_that_is_wider_than_a_line_breaks() {
+        let mut wide = Table::listed(["controller"], ["word"]);
+        wide.row(["x".repeat(150), "16".to_owned()]);
+        let found = table(&wide);
+        assert!(
+            found.lines().all(|line| line.chars().count() <= 100),
+            "{found}"
+        );
+        assert_eq!(found.matches('x').count(), 150, "{found}");
     }
 }

@@ -137,6 +137,8 @@ fn the_best_controller_of_a_motor_is_recommended_with_the_reason() {
     ] {
         assert!(said.stdout.contains(text), "{text}: {said:?}");
     }
+    let without_integral = "p-pwm has no integral: its current stays below the reference";
+    assert!(said.stdout.contains(without_integral), "{said:?}");
     let board = ["--board", "st-b-g431b-esc1", "--json"];
     let advice = run(["advise", "teknic-m2310p"].iter().chain(&board)).json();
     let place = advice["recommended"].as_u64().expect("a place") as usize;
@@ -289,6 +291,13 @@ fn what_nobody_measured_is_told_and_why_the_current_is_limited() {
     let but = "works, but `max_current` allows 124 mNm of the rated 128 mNm only";
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words(&said.stdout).contains(but), "{said:?}");
+    // 36.9 mNm/A times 3.21 A, and that times 1.5 pi/(3 sqrt(3)).
+    let stated = "`rated_torque` 128 mNm is taken as stated; the rated 3.21 A makes 118.4 mNm as a block, in the mean (36.9 mNm/A), and 107.4 mNm as the peak of a sine (33.46 mNm/A)\n";
+    assert!(said.stderr.contains(stated), "{said:?}");
+    assert!(
+        said.stdout.contains("; 33.46 mNm/A of sine; 181 g cm2\n"),
+        "{said:?}"
+    );
     let heat = "heats no more than a block of the rated 3.21 A";
     assert!(words(&said.stdout).contains(heat), "{said:?}");
     text = text.replace(
@@ -302,6 +311,63 @@ fn what_nobody_measured_is_told_and_why_the_current_is_limited() {
     assert!(said.stderr.contains(note), "{said:?}");
     let heat = "heats more than a block of the rated 3.21 A";
     assert!(words(&said.stdout).contains(heat), "{said:?}");
+}
+
+/// A rated torque that is the rated current's as a sine, or as a block, needs no word.
+#[test]
+fn a_rated_torque_of_the_rated_current_is_not_noted() {
+    for motor in ["teknic-m2310p", PAPER] {
+        let said = run(["check", motor]);
+        assert!(!said.stderr.contains("is taken as stated"), "{said:?}");
+    }
+    let said = run(["check", PAPER]);
+    assert!(
+        said.stdout.contains(" mNm/A of block") || said.stdout.contains(" Nm/A of block"),
+        "{said:?}"
+    );
+}
+
+/// A speed loop leaves room for the ripple of a PWM period and the trip level, by which sensors and inductors are chosen.
+#[test]
+fn ten_lines_of_a_drive_with_a_speed_loop_tell_ripple_and_trip_level() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("flat.toml");
+    let text = FLAT_45.replace("kind = \"pdcc\"", "kind = \"pdcc\"\nspeed_loop = \"on\"");
+    fs::write(&path, text).expect("can be written");
+    let flat = path.to_str().expect("a path");
+    let variant = "pdcc:speed_loop=on";
+    for arguments in [
+        &["check", flat][..],
+        &["check", "hurst-long", "--controller", variant],
+        &["check", PAPER, "--controller", "pdcc:hall_capture=sampled"],
+    ] {
+        let said = run(arguments);
+        assert_short(&said);
+        for text in ["; PWM ripple to ", "; trips at "] {
+            assert!(said.stdout.contains(text), "{text}: {said:?}");
+        }
+    }
+}
+
+#[test]
+fn check_runs_a_drive_at_another_speed() {
+    let at = |rpm: &str| run(["check", PAPER, "--rpm", rpm]);
+    for (asked, told) in [
+        ("1200", "; at 1200 rpm 100.0 %"),
+        ("125.66rad/s", "; at 1200 rpm 100.0 %"),
+    ] {
+        let said = at(asked);
+        assert_eq!(said.code, 0, "{said:?}");
+        assert_short(&said);
+        let words = said.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(told), "{said:?}");
+    }
+    let json = run(["check", PAPER, "--rpm", "1200", "--json"]).json();
+    assert!(number(&json["asked"], "torque_pct") > 97.0, "{json}");
+    assert!(run(["check", PAPER, "--json"]).json()["asked"].is_null());
+    at("90000").assert_bad_input(&["--rpm 90000: beyond maximum_speed = "]);
+    at("1").assert_bad_input(&["--rpm 1: slower than", "`hexagen simulate`"]);
+    at("1200Nm").assert_bad_input(&["--rpm", "a speed"]);
 }
 
 /// A board of three shunts.
@@ -712,7 +778,7 @@ fn check_tells_how_often_the_switches_turn_on() {
         let slow = 1e-3 * number(&json["points"][0], "switching_hz");
         assert!(kilohertz.contains(&slow), "{variant}: {slow} kHz");
         let said = run(arguments);
-        let text = format!("switches at {slow:.1} kHz; PWM ripple to 1.82 A pp");
+        let text = format!("; PWM ripple to 1.82 A pp; switches at {slow:.1} kHz");
         assert!(said.stdout.contains(&text), "{variant}: {said:?}");
     }
 }

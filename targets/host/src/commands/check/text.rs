@@ -54,20 +54,66 @@ fn of_defaults(judgement: &Judgement) -> Vec<String> {
     lines.collect()
 }
 
+/// Deviation of a stated rated torque from that of the rated current which is told.
+const APART: f64 = 0.02;
+
+/// What is told of a stated rated torque that the rated current does not make as any current, with what it makes.
+pub(super) fn stated_torque(motor: &MotorSpec) -> Option<String> {
+    let stated = motor.rated_torque?;
+    let block = motor.emf_constant * motor.emf_shape.quasi_square_factor();
+    let sine = motor.rated_torque_constant();
+    let is_apart = |per_ampere: f64| {
+        let made = per_ampere * motor.rated_current;
+        (stated / made - 1.0).abs() > APART
+    };
+    let made = |per_ampere: f64, basis: &str| {
+        let torque = engineering(per_ampere * motor.rated_current, "Nm");
+        format!("{torque} {basis} ({})", engineering(per_ampere, "Nm/A"))
+    };
+    let as_sine = match motor.emf_shape {
+        EmfShape::Trapezoidal { .. } => String::new(),
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => {
+            format!(", and {}", made(sine, "as the peak of a sine"))
+        }
+    };
+    (is_apart(block) && is_apart(sine)).then(|| {
+        format!(
+            "`rated_torque` {} is taken as stated; the rated {} makes {}{as_sine}",
+            engineering(stated, "Nm"),
+            engineering(motor.rated_current, "A"),
+            made(block, "as a block, in the mean"),
+        )
+    })
+}
+
+/// Basis of the torque per ampere: of which current the ampere is the peak.
+fn basis(shape: EmfShape) -> &'static str {
+    match shape {
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => "of sine",
+        EmfShape::Trapezoidal { .. } => "of block",
+    }
+}
+
+/// In g cm2 as data sheets have it, unless it is that of a large machine.
+fn of_inertia(inertia: f64) -> String {
+    if inertia < 1e-3 {
+        format!("; {} g cm2", significant(1e7 * inertia, 3))
+    } else {
+        format!("; {} kg m2", significant(inertia, 3))
+    }
+}
+
 fn of_motor(motor: &MotorSpec) -> String {
-    let inertia = motor
-        .inertia
-        .map_or("inertia unknown".to_owned(), |inertia| {
-            format!("{} kg m2", significant(inertia, 3))
-        });
     format!(
-        "{} pole pair{} ({} magnets), star phase {}, {}; {}; {inertia}",
+        "{} pole pair{} ({} magnets), star phase {}, {}; {} {}{}",
         motor.pole_pairs,
         if motor.pole_pairs == 1 { "" } else { "s" },
         2 * motor.pole_pairs,
         engineering(motor.resistance, "ohm"),
         engineering(motor.inductance, "H"),
         engineering(motor.rated_torque_constant(), "Nm/A"),
+        basis(motor.emf_shape),
+        motor.inertia.map_or(String::new(), of_inertia),
     )
 }
 
@@ -95,7 +141,7 @@ fn of_controller(judgement: &Judgement, drive: &Prepared) -> String {
     });
     let speed = drive.left_out.map(|speed| of_speed_loop(speed, drive));
     format!(
-        "{}, {edges}; switches at {rates}{}{ripple}",
+        "{}, {edges}{ripple}; switches at {rates}{}",
         drive.spec.controller.kind(),
         speed.unwrap_or_default(),
     )
@@ -226,7 +272,7 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
         )
     });
     format!(
-        "{} takes a peak of {}, {rated}{drawn}{beyond}; trips at {}",
+        "{} takes a peak of {}; trips at {}; {rated}{drawn}{beyond}",
         engineering(judgement.torque_nm, "Nm"),
         engineering(judgement.peak_a, "A"),
         engineering(inverter.trip_current, "A"),
@@ -236,9 +282,8 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
 /// Torque and ripple, peak to peak of the means over a control period, of each run.
 fn of_torque(judgement: &Judgement) -> String {
     let (nominal, lowest) = judgement.runs();
-    let nominal = nominal
-        .iter()
-        .map(|point| of_run(&format!("at {:.0} rpm", point.rpm), point));
+    let nominal = nominal.iter().chain(&judgement.asked);
+    let nominal = nominal.map(|point| of_run(&format!("at {:.0} rpm", point.rpm), point));
     let lowest = lowest.iter().map(|point| {
         let bus = engineering(point.bus_v, "V");
         of_run(&format!("there on {bus}"), point)

@@ -157,15 +157,17 @@ fn largest_change(compared: &[(&str, &Accuracy)]) -> Option<String> {
     ))
 }
 
-/// A table with the figures of each that generates.
+/// A table with the figures of each that generates: numbers, and behind them a text.
 fn table<const N: usize>(
     rows: &[Row],
     header: [&str; N],
+    text: Option<&str>,
     cells: impl Fn(&Accuracy) -> Vec<String>,
 ) -> Table {
     let numbers = ["word"].into_iter().chain(header);
     let numbers = numbers.map(|name| Column::number(name, ""));
-    let mut table = Table::new("", [Column::text("controller")].into_iter().chain(numbers));
+    let columns = [Column::text("controller")].into_iter().chain(numbers);
+    let mut table = Table::new("", columns.chain(text.map(Column::text)));
     for row in rows {
         let mut all = vec![row.controller.clone(), row.word.to_string()];
         match &row.accuracy {
@@ -178,15 +180,8 @@ fn table<const N: usize>(
 }
 
 fn accuracy_table(rows: &[Row]) -> Table {
-    let header = [
-        "SNR dB",
-        "largest V",
-        "bound V",
-        "ratio",
-        "decisions %",
-        "closed loop",
-    ];
-    table(rows, header, |accuracy| {
+    let header = ["SNR dB", "largest V", "bound V", "ratio", "decisions %"];
+    table(rows, header, Some("closed loop"), |accuracy| {
         let one_step = &accuracy.one_step;
         let mut trips = accuracy
             .closed_loop
@@ -226,7 +221,7 @@ fn step_table(rows: &[Row]) -> Table {
         "equal steps %",
         "counts apart",
     ];
-    table(rows, header, |accuracy| {
+    table(rows, header, None, |accuracy| {
         let one_step = &accuracy.one_step;
         let bound = |counts: f64| {
             if counts.is_finite() {

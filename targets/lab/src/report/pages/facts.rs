@@ -4,7 +4,7 @@ use super::phase_keys;
 use super::shapes::emf_shape;
 use crate::report::{Block, Cell, Column, Figure, Table};
 use crate::results::Results;
-use crate::text::{grouped, number, quantity};
+use crate::text::{demanded, grouped, number, quantity};
 use hexagen_codegen::spec::{BusSource, CurrentSensing, EmfShape};
 use std::f64::consts::TAU;
 
@@ -24,12 +24,14 @@ pub fn motor_name(data: &Results) -> &str {
 
 /// The sentences below the heading.
 pub fn opening(data: &Results) -> Vec<Block> {
+    let own = data.own.as_ref().map(|own| &own.judgement);
+    let reach = own.map_or(data.torque, |own| own.greatest_torque_nm);
     let lead = format!(
         "Predictive current controllers for this motor, generated as fixed-point code and simulated in closed loop: \
          {}-bit current samples every {}, {} demanded.",
         data.inverter.adc_bits,
         quantity(data.inverter.t_s, "s"),
-        quantity(data.torque, "Nm")
+        demanded(data.torque, reach, |torque| quantity(torque, "Nm"))
     );
     let check = data.verification.as_ref().map(|check| {
         let (steps, engine) = (grouped(check.steps), &check.engine);
