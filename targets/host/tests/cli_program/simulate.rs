@@ -774,7 +774,7 @@ fn the_bus_gives_the_power_of_shaft_and_windings() {
     }
     let check = run(["check", PAPER]).stdout;
     assert!(
-        check.contains("; bus mean 16.44 A, in braking to -12 A;"),
+        check.contains("; bus mean 16.44 A, braking -12 A"),
         "{check}"
     );
 }

@@ -89,8 +89,8 @@ pub(super) fn stated_torque(motor: &MotorSpec) -> Option<String> {
 /// Basis of the torque per ampere: of which current the ampere is the peak.
 fn basis(shape: EmfShape) -> &'static str {
     match shape {
-        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => "of sine",
-        EmfShape::Trapezoidal { .. } => "of block",
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => "(peak of a sine)",
+        EmfShape::Trapezoidal { .. } => "(of a block)",
     }
 }
 
@@ -202,7 +202,7 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         .map(str::to_owned)
         .or_else(|| ended_by(judgement, drive));
     format!(
-        "rated speed takes {} (with L) of {reach}; {lasts} to {} rpm{}{}",
+        "rated speed takes {} of {reach}; {lasts} to {} rpm{}{}",
         engineering(judgement.rating_v, "V"),
         end.floor(),
         why.unwrap_or_default(),
@@ -263,7 +263,7 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     let drawn = drawn.map_or(String::new(), |mean| {
         let returned = judgement.unwatched_return_a.map(|returned| {
             let returned = significant(returned, 2);
-            format!(", in braking to -{returned} A")
+            format!(", braking -{returned} A")
         });
         format!(
             "; bus mean {}{}",
