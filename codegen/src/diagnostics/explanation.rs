@@ -367,10 +367,10 @@ impl Code {
                 "Give one value for all sensors, or as many as `sensed_phases` names.",
             ),
             Self::OutsideOfBoard => say(
-                "The file of the board states the bus voltages that its parts bear.",
+                "The file of the board states the bus voltages for which it is made: those that its parts bear, or those of its battery, from empty to full. What its source says of each, `hexagen boards NAME` prints. And it states which current sensors there are.",
                 "board = \"vesc-4\"\nbus_voltage = \"70 V\"",
                 "board = \"vesc-4\"\nbus_voltage = \"48 V\"",
-                "Choose another board, or a bus voltage that this one is made for.",
+                "Choose another board, or a bus voltage for which this one is made. Where the limit is of another battery than yours, and the parts bear your voltage, state `v_bus = \"measured\"` and your own `bus_min` or `bus_max`: they replace the board's.",
             ),
             _ => say(
                 "Half a count of error is too much of what is measured.",

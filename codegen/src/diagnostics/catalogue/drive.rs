@@ -15,8 +15,8 @@ pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
         Code::OutsideOfBoard,
         &given.location,
         format!(
-            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply or take another board",
-            given.field, given.given, limit.field, limit.given
+            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply, state your own `{}` with `v_bus: measured` where that one is of another battery and the parts bear yours, or take another board",
+            given.field, given.given, limit.field, limit.given, limit.field
         ),
     );
     with_parts(error, &[limit])
