@@ -435,9 +435,10 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
     let tight = "pdcc:target=cortex_m4,core_clock=64MHz";
     let told = of("c99", tight);
     assert!(told.contains("HX0614"), "{told}");
-    assert!(told.contains("in C control at"), "{told}");
+    assert!(told.contains("until control runs at"), "{told}");
+    assert!(told.contains("the largest ratio of C to Rust"), "{told}");
     assert!(!of("rust", tight).contains("in C a step"));
-    assert!(of("datasheet", tight).contains("in Rust it fits"));
+    assert!(of("datasheet", tight).contains("in Rust the step fits"));
     // Nothing says there that the drive is to be in C.
     let checked = run(["check", "hoverboard-hub", "--controller", tight]).stderr;
     assert!(!checked.contains("HX0614"), "{checked}");
