@@ -178,6 +178,8 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
         if let Some(value) = catalogue::most_of_absurd([bus, taken], voltages, values) {
             return catalogue::thousandfold(Code::RatingBeyondBus, &value, [bus, taken]);
         }
+        let [emf, drop, inductive] = voltages;
+        let inductance = || origins.of_motor("inductance");
         let beyond = catalogue::Beyond {
             torques: [torque, envelope.torque(rated)],
             speed: envelope.speed(torque),
@@ -188,6 +190,8 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
                 let is_turned = envelope.weakening.is_some();
                 !is_turned && is_of_board && spec.inverter.bus.takes(*taken)
             }),
+            inductive: (inductive > emf.max(drop))
+                .then(|| (inductance(), spec.motor.pole_pairs, inductive)),
         };
         let given = origins.given(SPEED, "");
         catalogue::rating_beyond_bus((origins.at(SPEED), &given), &beyond)

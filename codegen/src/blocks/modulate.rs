@@ -5,6 +5,7 @@ use crate::design::vectors::SECTOR_CURRENT;
 use crate::ir::{
     Coefficient, Expr, Flag, Interval, Memory, Named, Output, Phase, Phases, named, pick,
 };
+use crate::spec::InverterSpec;
 
 /// Leg state: pulsed.
 pub const PULSED: i32 = 0;
@@ -253,10 +254,21 @@ fn counts<'b>(l: &Lowering<'b>, lifted: Expr<'b>, top: u32) -> Expr<'b> {
     let top = if top == l.spec.inverter.timer_period {
         l.number("timer_period", largest, "Compare value of 100 % duty.")
     } else {
-        let doc = "Largest compare value: the lower switch is on for long enough on either side of the pulse.";
-        l.number("compare_max", largest, doc)
+        l.number("compare_max", largest, about_largest(&l.spec.inverter, top))
     };
     counts.clamp(0, top)
+}
+
+/// What a largest compare value below the timer's period leaves time for. Dead time is part of the low time that is
+/// commanded: the lower switch is on for less.
+fn about_largest(inverter: &InverterSpec, top: u32) -> &'static str {
+    if top == inverter.largest_compare() {
+        "Largest compare value: by the command each leg is low for `minimum_low_time` in every PWM period, which includes the dead time."
+    } else if top == inverter.readable_top() {
+        "Largest compare value: by the command each leg is low for long enough to be read at both ends of the period."
+    } else {
+        "Largest compare value of the highest of three legs: by the command it is low until its sensor is read at the beginning of the period. At the end two sensors are read, and its current is the rest of theirs; the dead time may leave its lower switch off."
+    }
 }
 
 /// Sign of each leg in the conducting pair of a sector; added to the open stage.

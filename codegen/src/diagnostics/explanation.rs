@@ -167,7 +167,7 @@ impl Code {
                 "Data sheets state R, L and EMF of a phase or between terminals, as peak, rms or mean; the readings of R and L differ by a factor of two, those of an EMF by up to three, so none is guessed. The current of a sinusoidal motor is printed as peak or rms, 1.41 times apart.",
                 "resistance = \"135 mohm\"",
                 "resistance = \"135 mohm per_phase\"",
-                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`, and so are the torque and speed constants that Maxon prints: they hold for block commutation, also of a motor with a sinusoidal EMF (chapter 3 of the guide, \"Maxon's form\"). Servo motors state their current as `rms`; write `peak` for what block commutation carries, and where nothing is said.",
+                "Look for \"phase to phase\", \"terminal\" or \"line to line\" in the data sheet, or measure between two terminals and write `line_to_line`. The KV of an outrunner is `block_mean`, and so are the torque and speed constants that Maxon prints: they hold for block commutation, also of a motor with a sinusoidal EMF (chapter 3 of the guide, \"Maxon's form\"). Servo motors state their current as `rms`; write `peak` for what block commutation carries, and where nothing is said. A rated current is the continuous one: a short-time maximum, which sheets call max or peak current, is no rating, but at most `max_current` of the inverter.",
             ),
             Self::WrongBasis => say(
                 "The value cannot refer to what the word says.",
@@ -367,10 +367,10 @@ impl Code {
                 "Give one value for all sensors, or as many as `sensed_phases` names.",
             ),
             Self::OutsideOfBoard => say(
-                "The file of the board states the bus voltages that its parts bear.",
+                "The file of the board states the bus voltages for which it is made: those that its parts bear, or those of its battery, from empty to full. What its source says of each, `hexagen boards NAME` prints. And it states which current sensors there are.",
                 "board = \"vesc-4\"\nbus_voltage = \"70 V\"",
                 "board = \"vesc-4\"\nbus_voltage = \"48 V\"",
-                "Choose another board, or a bus voltage that this one is made for.",
+                "Choose another board, or a bus voltage for which this one is made. Where the limit is of another battery than yours, and the parts bear your voltage, state `v_bus = \"measured\"` and your own `bus_min` or `bus_max`: they replace the board's.",
             ),
             _ => say(
                 "Half a count of error is too much of what is measured.",

@@ -66,14 +66,11 @@ impl SpecAst {
         whole
     }
 
-    /// Greatest bus voltage that the board states, volt.
+    /// Greatest bus voltage that the board states and no field of the drive's own replaces, volt.
     pub(super) fn board_bus(&self) -> Option<f64> {
         let board = self.board.as_ref()?;
-        let (most, _) = volts(
-            &board.file.as_ref()?.inverter,
-            "bus_max",
-            &board.name.location,
-        )?;
+        let of_board = &board.file.as_ref()?.inverter;
+        let (most, _) = limit_of_board(&self.inverter, of_board, "bus_max", &board.name.location)?;
         Some(most)
     }
 
@@ -101,11 +98,8 @@ impl SpecAst {
         let location = self.inverter.location.clone();
         whole.overlay(self.inverter.clone());
         whole.location = location.or_else(|| Some(board.name.location.clone()));
-        errors.extend(outside_of_board(
-            &whole,
-            &file.inverter,
-            &board.name.location,
-        ));
+        let sections = [&whole, &self.inverter, &file.inverter];
+        errors.extend(outside_of_board(sections, &board.name.location));
         errors.extend(sensors_not_there(&whole, &file.inverter));
         for (setting, wanted, fields) in OF_SETTINGS {
             let is_set =
@@ -178,15 +172,29 @@ fn volts(section: &Section, name: &'static str, at: &Location) -> Option<(f64, P
     Some((given.si, given.part))
 }
 
+/// A limit of the board, as [`volts`]; none where the drive states its own, which replaces it.
+fn limit_of_board(
+    own: &Section,
+    board: &Section,
+    name: &'static str,
+    at: &Location,
+) -> Option<(f64, Part)> {
+    let is_own = own.field(name).is_some();
+    volts(board, name, at).filter(|_| !is_own)
+}
+
 /// Voltages that are not the board's, or limits that leave none. Values that cannot be read are told of elsewhere.
-fn outside_of_board(whole: &Section, board: &Section, at: &Location) -> Option<Diagnostic> {
+/// Sections: the whole inverter, the drive's own fields of it, and the board's.
+fn outside_of_board([whole, own, board]: [&Section; 3], at: &Location) -> Option<Diagnostic> {
     let volts = |section: &Section, name: &'static str| volts(section, name, at);
-    let (low, high) = (volts(board, "bus_min"), volts(board, "bus_max"));
-    if let (Some((least, low)), Some((most, high))) = (&low, &high)
+    if let (Some((least, low)), Some((most, high))) =
+        (volts(board, "bus_min"), volts(board, "bus_max"))
         && least > most
     {
-        return Some(catalogue::bus_limits_exchanged(low, high));
+        return Some(catalogue::bus_limits_exchanged(&low, &high));
     }
+    let limit = |name: &'static str| limit_of_board(own, board, name, at);
+    let (low, high) = (limit("bus_min"), limit("bus_max"));
     ["bus_voltage", "over_voltage"]
         .into_iter()
         .find_map(|name| {

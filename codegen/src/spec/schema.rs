@@ -134,8 +134,8 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("offset_tolerance", &[D::Current], 1e-5, 2e4, "2 A"),
     quantity("trip_current", &[D::Current], 0.01, 2e4, "38 A"),
     quantity("max_current", &[D::Current], 0.01, 2e4, "20 A"),
-    quantity("bus_current_limit", &[D::Current], 1e-3, 2e4, "10 A"),
-    quantity("return_current_limit", &[D::Current], 1e-3, 2e4, "5 A"),
+    quantity("bus_current_limit", &[D::Current], 0.0, 2e4, "10 A"),
+    quantity("return_current_limit", &[D::Current], 0.0, 2e4, "5 A"),
     quantity("hall_timer_clock", &[D::Frequency], 1e3, 1e9, "1 MHz"),
     quantity(
         "minimum_speed",

@@ -136,6 +136,23 @@ pub fn option_without_effect(
     }
 }
 
+/// The clock of a core that is not named; `portable`: where that is written.
+pub fn clock_without_core(clock: &Part, cores: &[&str], portable: Option<&Location>) -> Diagnostic {
+    let Part { field, given, .. } = clock;
+    let error = Diagnostic::new(
+        Code::DependentField,
+        &clock.location,
+        format!(
+            "`{field}`: {given} has an effect only with a core that is named; set `target` to {}, or remove `{field}`",
+            list(cores, "or"),
+        ),
+    );
+    match portable {
+        Some(at) => error.with_note(at, "`target: portable`"),
+        None => error,
+    }
+}
+
 /// `reference: proportional` with `modulation: pair`.
 pub fn proportional_pair(at: &Location, modulation: &Location) -> Diagnostic {
     Diagnostic::new(

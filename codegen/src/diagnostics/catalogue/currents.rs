@@ -196,6 +196,18 @@ pub fn bus_current_above_trip(limit: &Part, trip: f64, needed: f64) -> Diagnosti
     )
 }
 
+/// A limit of the current that is returned to the supply, outside what can be held; `low`, `high`: its limits.
+pub fn return_current_outside(limit: &Part, low: &str, high: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        &limit.location,
+        format!(
+            "`{}`: {} lies outside {low} to {high}; give a value within, or, for a supply that takes nothing back, remove it and let a `braking_fade` with `v_bus: measured` take the braking torque away as the bus voltage rises",
+            limit.field, limit.given,
+        ),
+    )
+}
+
 /// Hysteresis control reaches the trip current without a fault. `reach`: greatest phase current;
 /// `band`: half width of the bands; `stride`: greatest change of a current in `periods` periods;
 /// all in ampere.

@@ -15,8 +15,8 @@ pub fn outside_of_board(given: &Part, side: &str, limit: &Part) -> Diagnostic {
         Code::OutsideOfBoard,
         &given.location,
         format!(
-            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply or take another board",
-            given.field, given.given, limit.field, limit.given
+            "`{}`: {} is {side} the board's `{}` of {}; give the voltage of its supply, state your own `{}` with `v_bus: measured` where that one is of another battery and the parts bear yours, or take another board",
+            given.field, given.given, limit.field, limit.given, limit.field
         ),
     );
     with_parts(error, &[limit])
@@ -216,7 +216,7 @@ pub fn bus_too_low(
 }
 
 /// A rating beyond the envelope of the drive.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Beyond {
     /// Torque of the rating, and the greatest within the envelope at rated speed, Nm.
     pub torques: [f64; 2],
@@ -226,6 +226,24 @@ pub struct Beyond {
     pub bus: f64,
     /// The one that the rating takes, volt; none above the limit of a measured bus, or of the board.
     pub raised: Option<f64>,
+    /// Where the inductance takes most of that: the inductance, the pole pairs, and what it takes, volt.
+    pub inductive: Option<(Part, u32, f64)>,
+}
+
+impl Beyond {
+    /// The values that are likely wrong, a clause.
+    fn doubtful(&self) -> String {
+        self.inductive.as_ref().map_or_else(
+            || "check the bases of the EMF constant and `resistance`".to_owned(),
+            |(inductance, pairs, taken)| {
+                format!(
+                    "check `inductance` ({}) for the prefix of its unit and `pole_pairs` ({pairs}) for a count of magnets, of which two make a pair: the change of the current through the inductance takes {} alone",
+                    inductance.given,
+                    engineering(*taken, "V"),
+                )
+            },
+        )
+    }
 }
 
 /// A rating at which the bus cuts the current's shape. `speed`: the rated speed and where it was written.
@@ -249,8 +267,9 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         Code::RatingBeyondBus,
         at,
         format!(
-            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`, or check the bases of the EMF constant and `resistance`",
+            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`, or {}",
             engineering(beyond.bus, "V"),
+            beyond.doubtful(),
         ),
     )
 }

@@ -1,9 +1,10 @@
 //! Texts about the structure of a specification: syntax, sections, fields, files.
 
-use super::part::Part;
+use super::part::{Part, with_parts};
 use crate::diagnostics::{
-    Code, Diagnostic, Location, did_you_mean_one, enumerated, list, nearest, similar,
+    Code, Diagnostic, Location, did_you_mean_one, enumerated, list, nearest, significant, similar,
 };
+use std::f64::consts::PI;
 
 /// The macro call or the file does not parse; `what` is the parser's message.
 pub fn syntax(at: &Location, what: &str) -> Diagnostic {
@@ -223,6 +224,25 @@ pub fn missing_alternative(at: &Location, section: &str, fields: &[(&str, String
             enumerated(&forms, "or"),
         ),
     )
+}
+
+/// None of the `fields` that state the EMF is given, and a no-load speed at a voltage says its `constant`, rad/s per volt.
+pub fn missing_emf_beside_no_load_speed(
+    at: &Location,
+    fields: &[&str],
+    [speed, voltage]: [&Part; 2],
+    constant: f64,
+) -> Diagnostic {
+    let error = Diagnostic::new(
+        Code::MissingField,
+        at,
+        format!(
+            "`motor` lacks the field {}; `no_load_speed` over `nominal_voltage` is one: add `speed_constant: {} rpm/V block_mean` (a no-load speed is one of block commutation), or what the data sheet prints",
+            list(fields, "or"),
+            significant(constant * 30.0 / PI),
+        ),
+    );
+    with_parts(error, &[speed, voltage])
 }
 
 /// A section is missing.

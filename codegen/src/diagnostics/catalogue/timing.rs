@@ -113,14 +113,17 @@ pub fn step_exceeds_period(at: &Location, step: &LongStep) -> Diagnostic {
 
 /// A step that may take longer than the control period in C, while it fits in Rust.
 pub fn step_exceeds_period_in_c(at: &Location, step: &LongStep) -> Diagnostic {
-    let [_, in_c] = step.most.map(f64::ceil);
+    let [rust, in_c] = step.most;
     let [_, frequency] = step.frequencies();
     Diagnostic::new(
         Code::StepExceedsPeriod,
         at,
         format!(
-            "`target`: {}: in C a step takes up to {in_c} cycles on {} (what counted drives take more there, at most), trips and braking included, and {}in C control at {frequency} at most (lower `f_pwm`, or raise `pwm_per_control`); in Rust it fits",
+            "`target`: {}: in C a step is estimated to take up to {} cycles, trips and braking included: its {} in Rust times {}, the largest ratio of C to Rust among the drives that were counted on {} (your drive and chip may differ); {}lower `f_pwm` or raise `pwm_per_control` until control runs at {frequency} at most; in Rust the step fits",
             step.given,
+            in_c.ceil(),
+            rust.ceil(),
+            significant(in_c / rust),
             step.chip,
             step.of_period(),
         ),
@@ -184,12 +187,12 @@ pub fn hall_timer(clock: &Part, period: &Part, ticks: f64, t_s: f64) -> Diagnost
 }
 
 /// A sector at the minimum speed lasts longer than the Hall timer counts. `ticks`: its length;
-/// `least`: the lowest accepted speed, rad/s; `clock`: the fastest accepted capture clock, hertz
-/// (none when edges are sampled); `culprit`: the clock as written where nobody stated the speed.
+/// `least`: the lowest accepted speed, rad/s (none where the rated one is below it); `clock`: the fastest accepted capture
+/// clock, hertz (none when edges are sampled); `culprit`: the clock as written where nobody stated the speed.
 pub fn minimum_speed(
     speed: &Part,
     ticks: f64,
-    least: f64,
+    least: Option<f64>,
     clock: Option<f64>,
     culprit: Option<&Part>,
 ) -> Diagnostic {
@@ -200,14 +203,16 @@ pub fn minimum_speed(
             format!("lower `hall_timer_clock` to {clock}")
         },
     );
+    let faster = least.map_or_else(String::new, |least| {
+        format!(", or raise the speed to {}", rpm_at_least(least))
+    });
     Diagnostic::new(
         Code::MinimumSpeed,
         &culprit.unwrap_or(speed).location,
         format!(
-            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; {slower}, or raise the speed to {}",
+            "`minimum_speed`: {}, where 60 electrical degrees last {} ticks of the Hall timer, above its limit of 65000; {slower}{faster}",
             speed.given,
             significant(ticks.round()),
-            rpm_at_least(least),
         ),
     )
 }

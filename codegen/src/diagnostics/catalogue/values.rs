@@ -242,6 +242,19 @@ pub fn missing_basis(
     )
 }
 
+/// A rated current without its basis, of which data sheets print another one beside it.
+pub fn missing_basis_of_current(
+    at: &Location,
+    given: &str,
+    forms: &[(String, String)],
+) -> Diagnostic {
+    let mut error = missing_basis(at, "rated_current", given, forms);
+    error.message.push_str(
+        "; it is the continuous current of the motor: a maximum is `max_current` of the inverter",
+    );
+    error
+}
+
 /// An unknown word after the unit, where a basis stands; `remedy` is a clause.
 pub fn unknown_basis(
     at: &Location,

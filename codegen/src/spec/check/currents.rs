@@ -17,6 +17,9 @@ const FAR_ABOVE: f64 = 5.0;
 /// Minimum of the largest set-point, ADC counts: half a count is 5 % of it.
 const LEAST_COUNTS: f64 = 10.0;
 
+/// The field of what the supply takes back.
+const RETURNED: &str = "return_current_limit";
+
 /// Trip level and largest set-point, ampere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Currents {
@@ -173,13 +176,13 @@ pub(super) fn check_within(
     errors: &mut Collector,
 ) {
     if current < least * (1.0 - 1e-9) || current > trip * (1.0 + 1e-9) {
-        errors.push(catalogue::out_of_limits(
-            &part.location,
-            part.field,
-            &part.given,
-            &format!("{}, {counts},", engineering(at_least(least), "A")),
-            &format!("{}, the trip level", engineering(at_most(trip), "A")),
-        ));
+        let low = format!("{}, {counts},", engineering(at_least(least), "A"));
+        let high = format!("{}, the trip level", engineering(at_most(trip), "A"));
+        let error = match part.field {
+            RETURNED => catalogue::return_current_outside(part, &low, &high),
+            field => catalogue::out_of_limits(&part.location, field, &part.given, &low, &high),
+        };
+        errors.push(error);
     }
 }
 

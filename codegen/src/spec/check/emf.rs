@@ -5,7 +5,7 @@
 //! basis is that times a number, which follows from the shape of the EMF.
 
 use super::agreement;
-use crate::diagnostics::{Collector, catalogue, engineering};
+use crate::diagnostics::{Collector, Diagnostic, catalogue, engineering};
 use crate::spec::EmfShape;
 use crate::spec::ast::Basis;
 use crate::spec::reader::{Given, Reader};
@@ -145,6 +145,35 @@ impl Emf<'_> {
     pub fn phase_constant(&self, shape: EmfShape, pole_pairs: u32) -> f64 {
         self.constant(pole_pairs) / self.reading.factor(shape)
     }
+}
+
+/// Reports that none of the fields is given, and the constant that a no-load speed says in its place.
+pub(super) fn require(reader: &Reader, errors: &mut Collector) {
+    let is_missing = FIELDS.iter().all(|name| reader.may_lack(name));
+    match of_no_load(reader).filter(|_| is_missing) {
+        Some(error) => errors.push(error),
+        None => reader.require_any_of(errors, &FIELDS),
+    }
+}
+
+/// The speed constant of a no-load speed at a voltage that is stated beside it. Values that cannot be read are told of
+/// elsewhere.
+fn of_no_load(reader: &Reader) -> Option<Diagnostic> {
+    let mut untold = Collector::new();
+    let given =
+        ["no_load_speed", "nominal_voltage"].map(|name| reader.plain_quantity(&mut untold, name));
+    let is_right = untold.finish().is_none();
+    let [Some(speed), Some(voltage)] = given else {
+        return None;
+    };
+    is_right.then(|| {
+        catalogue::missing_emf_beside_no_load_speed(
+            reader.location(),
+            &FIELDS,
+            [&speed.part, &voltage.part],
+            speed.si / voltage.si,
+        )
+    })
 }
 
 /// All statements, the one that is taken first.

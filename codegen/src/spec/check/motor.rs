@@ -49,7 +49,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
     let names = ["resistance", "inductance", "rated_current", "rated_speed"];
     reader.require(errors, &names);
     reader.require_choice(errors, "emf_shape", &EMF_SHAPES);
-    reader.require_any_of(errors, &emf::FIELDS);
+    emf::require(reader, errors);
     reader.require_one_of(errors, ["pole_pairs", "poles"]);
     let pole_pairs = read_pole_pairs(reader, errors);
     let winding = read_winding(reader, errors);
@@ -256,7 +256,7 @@ fn read_rated_current<'a>(
                 ),
             ];
             let forms = forms.map(|(basis, meaning)| (format!("{text} {basis}"), meaning));
-            errors.push(catalogue::missing_basis(at, "rated_current", text, &forms));
+            errors.push(catalogue::missing_basis_of_current(at, text, &forms));
             None
         }
         [] | [Basis::Peak] => Some(given),

@@ -329,6 +329,8 @@ pub(super) fn check_speeds(
     let ticks = per_second * FRAC_PI_3 * widest / (minimum * pole_pairs);
     if ticks > GREATEST_AGE * (1.0 + 1e-9) {
         let least = minimum * ticks / GREATEST_AGE;
+        // As it is printed, to four digits, it must still be below the rated speed.
+        let least = Some(least).filter(|least| *least < 0.999 * rated.si);
         let is_timed = matches!(clocked, RotorSensing::TimedHalls { .. });
         let clock = is_timed.then_some(per_second * GREATEST_AGE / ticks);
         let stated = inverter.hall_timer_clock.as_ref();

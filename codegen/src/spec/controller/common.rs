@@ -56,7 +56,7 @@ words! {
     /// The mean of three pulsed legs, which is free within the period.
     pub enum CommonMode {
         "centred" = Centred: "the legs' extremes lie as far from the ends of the period: least ripple",
-        "readable" = Readable: "centred, but lowered as far as the highest leg must be low for its sensor or its bootstrap",
+        "readable" = Readable: "centred, but lowered where the highest leg would be low for less time than reading the sensors or `minimum_low_time` takes; of three sensors two are read at the end of the period",
         "clamped_low" = ClampedLow: "the lowest leg stays low: a third less switching",
     }
 }
@@ -349,7 +349,7 @@ pub(crate) const COMMON_MODE: Rule = rule::choice::<CommonMode>("common_mode", "
     .by_default(
         "`readable` with `current_sensing: low_side` or a `minimum_low_time`, else `centred`",
         &[
-            ("readable", "each leg must be low for its sensor or its bootstrap"),
+            ("readable", "reading the sensors, or `minimum_low_time`, takes low time of the legs"),
             ("centred", "least ripple of the three"),
         ],
     )

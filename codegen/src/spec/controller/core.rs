@@ -1,6 +1,6 @@
 //! The core that runs a controller.
 
-use crate::diagnostics::Collector;
+use crate::diagnostics::{Collector, catalogue};
 use crate::spec::reader::Reader;
 use crate::spec::words::{Words as _, words};
 
@@ -35,16 +35,26 @@ impl Default for Core {
 impl Core {
     /// Reads `target` and `core_clock`.
     pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Self {
-        let target = reader.choice_or_preset(errors, "target", &[]);
-        let core = Self {
-            target,
-            clock: (reader.plain_quantity(errors, "core_clock")).map(|clock| clock.si),
-        };
-        if core.name().is_none() {
-            let named = "target: cortex_m0 | cortex_m4 | riscv32";
-            reader.refuse_without(errors, named, &["core_clock"]);
+        let stated = reader.field("target");
+        let target = reader.choice(errors, "target", &[]);
+        let clock = reader.plain_quantity(errors, "core_clock");
+        // Of a core that cannot be read nothing follows.
+        let is_known = stated.is_none() || target.is_some();
+        let target = target.unwrap_or(Target::Portable);
+        if let Some(clock) = &clock
+            && is_known
+            && target == Target::Portable
+        {
+            let cores = Target::CHOICES.iter().zip(Target::WORDS);
+            let cores = cores.filter(|(core, _)| **core != Target::Portable);
+            let cores: Vec<&str> = cores.map(|(_, core)| core.word).collect();
+            let at = stated.map(|field| &field.location);
+            errors.push(catalogue::clock_without_core(&clock.part, &cores, at));
         }
-        core
+        Self {
+            target,
+            clock: clock.map(|clock| clock.si),
+        }
     }
 
     /// Its name as a word of `target`, if the specification names it.

@@ -188,6 +188,15 @@ impl<'a> Reader<'a> {
         if other_names::is_unused(&field.name) {
             return Some("no controller needs this value; leave it out".to_owned());
         }
+        if field.name == "controller" {
+            let kind = match &field.value {
+                Value::Word(word) => word,
+                _ => "pdcc",
+            };
+            return Some(format!(
+                "the controller is chosen by `kind`: write `kind: {kind}`, in a file below `[controller]`"
+            ));
+        }
         let meant = other_names::meant(&field.name)?;
         let is_here = self.rules.iter().any(|rule| rule.name == meant);
         is_here.then(|| other_names::remedy(meant, field))

@@ -1,12 +1,41 @@
 //! Names of data sheets for what a field takes in its own way. Spelling says nothing about them:
 //! a speed constant is nearer to `torque_constant` by its letters, and its reciprocal by its sense.
 
+use crate::spec::BOARDS;
 use crate::spec::ast::{Field, Value};
 use crate::spec::units::Dimension;
+use crate::timing;
+
+/// What encoders' sheets call the lines of a turn.
+const LINES: &[&str] = &[
+    "lines",
+    "angle_lines",
+    "encoder_lines",
+    "lines_per_turn",
+    "lines_per_revolution",
+    "ppr",
+    "encoder_ppr",
+    "pulses",
+    "pulses_per_turn",
+    "pulses_per_revolution",
+];
+
+/// What they call the counts of a turn, four of each line.
+const COUNTS: &[&str] = &[
+    "counts",
+    "angle_counts",
+    "encoder_counts",
+    "counts_per_turn",
+    "counts_per_revolution",
+    "cpr",
+    "encoder_cpr",
+];
 
 /// Fields, and what data sheets call them.
-const NAMES: [(&str, &[&str]); 17] = [
+const NAMES: [(&str, &[&str]); 19] = [
     ("kind", &["type"]),
+    ("angle_bits", LINES),
+    ("angle_bits", COUNTS),
     (
         "poles",
         &[
@@ -189,12 +218,57 @@ pub(super) fn kin(given: &str, known: &[&str]) -> Option<String> {
     if ["a", "b", "c"].contains(&given) && known.contains(&"abc") {
         return Some("write the phases as one word".to_owned());
     }
+    if known.contains(&"cortex_m4")
+        && let Some((name, core)) = core_of(given)
+    {
+        return Some(format!("for {name} write `{core}`"));
+    }
     let (core, _) = CORES
         .iter()
         .find(|(core, others)| others.contains(&given) && known.contains(core))?;
     Some(format!(
         "nothing is counted on it, the nearest is `{core}`, with your `core_clock`"
     ))
+}
+
+/// Fewest letters of a chip's name that tell its family, as `stm32g4`.
+const FAMILY: usize = 7;
+
+/// The core of a chip or of a board of the library, with its name; of a chip the beginning of its name is enough, and
+/// more may follow.
+fn core_of(given: &str) -> Option<(String, String)> {
+    let plain = |name: &str| {
+        let letters = name.chars().filter(char::is_ascii_alphanumeric);
+        letters.collect::<String>().to_lowercase()
+    };
+    let given = plain(given);
+    let is_chip = |name: &str| {
+        let chip = plain(name);
+        given.starts_with(&chip) || (given.len() >= FAMILY && chip.starts_with(&given))
+    };
+    // A chip may have other cores beside the one that was counted.
+    let counted = timing::chips().map(|chip| (chip.name, chip.target, format!(" ({})", chip.core)));
+    let of_boards = BOARDS.iter().filter_map(|board| {
+        // The core, and below `[source]` the chip that has it.
+        let mut targets = board.text.lines().filter_map(|line| {
+            let value = line.strip_prefix("target = \"")?;
+            value.split(['"', ',']).next()
+        });
+        Some((board.name, targets.next()?, targets.next()?))
+    });
+    let chips = of_boards.clone();
+    let mut chips = counted.chain(chips.map(|(_, core, chip)| (chip, core, String::new())));
+    let chip = chips.find(|(chip, ..)| is_chip(chip));
+    let mut boards = of_boards.filter(|(board, ..)| plain(board) == given);
+    let board = || {
+        boards
+            .next()
+            .map(|(board, core, _)| (format!("the board {board}"), core))
+    };
+    let (name, core) = chip
+        .map(|(chip, core, counted)| (format!("the chip {chip}{counted}"), core))
+        .or_else(board)?;
+    Some((name, core.to_owned()))
 }
 
 /// The word that another one stands for.
@@ -239,6 +313,9 @@ pub(super) fn remedy(meant: &str, field: &Field) -> String {
     if meant == "adc_gain" {
         return "write `adc_gain` for what a count is worth (A/count, or mV/A with `adc_reference`), or `amplifier_gain` for the number by which an amplifier multiplies the voltage of the `shunt`".to_owned();
     }
+    if meant == "angle_bits" {
+        return remedy_of_encoder(field);
+    }
     let Value::Number(number) = &field.value else {
         return format!("did you mean `{meant}`?");
     };
@@ -251,4 +328,32 @@ pub(super) fn remedy(meant: &str, field: &Field) -> String {
         "speed_constant" => "write `speed_constant` with the unit `rpm/V`".to_owned(),
         _ => format!("did you mean `{meant}`?"),
     }
+}
+
+/// Bits of what an encoder counts in a turn, a clause.
+fn remedy_of_encoder(field: &Field) -> String {
+    const FIELD: &str = "angle_bits";
+    let is_lines = LINES.contains(&field.name.to_lowercase().as_str());
+    let factor = if is_lines { 4 } else { 1 };
+    let counts = match &field.value {
+        Value::Number(number) => number.digits.parse::<u32>().ok(),
+        _ => None,
+    };
+    let counts = counts.and_then(|given| given.checked_mul(factor));
+    // Other numbers are refused.
+    let Some(counts) = counts.filter(|counts| *counts >= 256) else {
+        return format!(
+            "write `{FIELD}`, from 8 to 32: the base-2 logarithm of the counts in a turn, which are four of each line"
+        );
+    };
+    let of_lines = if is_lines { ", four of each line" } else { "" };
+    let rounded = if counts.is_power_of_two() {
+        ""
+    } else {
+        ", rounded down, and scale the count to 2^32 for a turn"
+    };
+    format!(
+        "write `{FIELD}: {}`, the base-2 logarithm of {counts} counts in a turn{of_lines}{rounded}",
+        counts.ilog2()
+    )
 }

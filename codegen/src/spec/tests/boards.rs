@@ -180,9 +180,42 @@ fn a_bus_that_is_not_the_board_s_is_refused_with_both_places() {
     assert_eq!(
         text,
         "motors/hub.toml:13:15: error[HX0330]: `bus_voltage`: 60 V is above the board's `bus_max` of 50 V; \
-         give the voltage of its supply or take another board\n\
+         give the voltage of its supply, state your own `bus_max` with `v_bus = \"measured\"` where that one is of another battery and the parts bear yours, or take another board\n\
          boards/mine.toml:6:11: note: `bus_max` 50 V"
     );
+}
+
+/// As the remedy says: limits of the drive's own replace those of the board's battery.
+#[test]
+fn limits_of_the_drive_replace_those_of_its_board() {
+    let told = |bus_voltage: &str, own: &str| {
+        let motor = MOTOR.replace("48 V", bus_voltage);
+        let motor = motor.replace("2000 rpm", "400 rpm");
+        let folder = Folder::new("own-limits", &motor, &BOARD.replace("10 V", "33.7 V"));
+        let call = format!(
+            "Rear {{ motor: \"motors/hub.toml\", board: \"boards/mine.toml\", inverter: {{ {own} }} }}"
+        );
+        folder.check(&call).0.err().unwrap_or_default()
+    };
+    let below = told("24 V", "");
+    assert!(
+        below.contains("24 V is below the board's `bus_min` of 33.7 V"),
+        "{below}"
+    );
+    assert_eq!(told("24 V", "v_bus: measured, bus_min: 20 V"), "");
+    assert_eq!(told("54 V", "v_bus: measured, bus_max: 58 V"), "");
+    assert_eq!(
+        told("48 V", "v_bus: measured, bus_max: 58 V, over_voltage: 56 V"),
+        ""
+    );
+    // One limit replaces itself alone, and holds.
+    let above = told("54 V", "v_bus: measured, bus_min: 20 V");
+    assert!(
+        above.contains("above the board's `bus_max` of 50 V"),
+        "{above}"
+    );
+    let below = told("24 V", "v_bus: measured, bus_min: 30 V");
+    assert!(below.contains("`bus_min`: 30 V"), "{below}");
 }
 
 #[test]

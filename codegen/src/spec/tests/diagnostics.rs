@@ -346,3 +346,58 @@ fn mangled_files_never_panic() {
         }
     }
 }
+
+/// What a message says to write, as it is written there: nothing else is told then.
+#[test]
+fn remedies_work_as_they_are_pasted() {
+    for (wrong, remedy, right) in [
+        (
+            "-back_emf; +motor no_load_speed = \"2700 rpm\"; +motor nominal_voltage = \"48 V\"",
+            "speed_constant = \"56.25 rpm/V block_mean\"",
+            "-back_emf; +motor no_load_speed = \"2700 rpm\"; +motor nominal_voltage = \"48 V\"; +motor {}",
+        ),
+        (
+            "+inverter hall_timer_clock = \"170 MHz\"",
+            "`hall_timer_clock` to 1.04 MHz",
+            "+inverter hall_timer_clock = \"1.04 MHz\"",
+        ),
+        (
+            "+controller target = \"stm32g431\"; +controller core_clock = \"170 MHz\"",
+            "`cortex_m4`",
+            "+controller target = \"cortex_m4\"; +controller core_clock = \"170 MHz\"",
+        ),
+        (
+            "+motor rotor = \"angle\"; +motor angle_pole_pairs = 4; +motor angle_lines = 1024",
+            "angle_bits = 12",
+            "+motor rotor = \"angle\"; +motor angle_pole_pairs = 4; +motor {}",
+        ),
+        (
+            "+motor rotor = \"angle\"; +motor angle_pole_pairs = 4; +motor cpr = 4000",
+            "angle_bits = 11",
+            "+motor rotor = \"angle\"; +motor angle_pole_pairs = 4; +motor {}",
+        ),
+    ] {
+        let found = found_in_file(&changed(COMPLETE, wrong));
+        let [error] = &found[..] else {
+            panic!("{wrong}: one error, not {found:?}");
+        };
+        assert!(error.message.contains(remedy), "{}", error.message);
+        let followed = changed(COMPLETE, &right.replace("{}", remedy));
+        assert!(found_in_file(&followed).is_empty(), "{followed}");
+    }
+}
+
+/// A speed above the rated one is refused as least one.
+#[test]
+fn a_least_speed_above_the_rated_one_is_no_remedy() {
+    let told = |clock: &str| {
+        let delta = format!("+inverter hall_timer_clock = \"{clock}\"");
+        let found = found_in_file(&changed(COMPLETE, &delta));
+        found[0].message.clone()
+    };
+    let far = told("170 MHz");
+    assert!(far.contains("lower `hall_timer_clock` to"), "{far}");
+    assert!(!far.contains("raise the speed"), "{far}");
+    let near = told("3 MHz");
+    assert!(near.contains("raise the speed to 115.4 rpm"), "{near}");
+}

@@ -286,7 +286,7 @@ fn what_nobody_measured_is_told_and_why_the_current_is_limited() {
     fs::write(&path, &text).expect("can be written");
     let path = path.to_str().expect("a path");
     let said = run(["check", path]);
-    let note = "assumed, so measure: `angle_offset` 0 deg, `angle_direction` forward\n";
+    let note = "assumed, so measure: `angle_offset` 0 deg, `angle_direction` forward, `adc_inverted` off\n";
     assert!(said.stderr.contains(note), "{said:?}");
     let but = "works, but `max_current` allows 124 mNm of the rated 128 mNm only";
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -304,7 +304,8 @@ fn what_nobody_measured_is_told_and_why_the_current_is_limited() {
         "angle_pole_pairs = 8\n",
         "angle_pole_pairs = 8\nangle_offset = \"12 deg\"\n",
     );
-    text = text.replace("[controller]", "max_current = \"4 A\"\n[controller]");
+    let stated = "max_current = \"4 A\"\nadc_inverted = \"off\"\n[controller]";
+    text = text.replace("[controller]", stated);
     fs::write(path, text).expect("can be written");
     let said = run(["check", path]);
     let note = "assumed, so measure: `angle_direction` forward\n";
@@ -501,9 +502,10 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
     let tight = "pdcc:target=cortex_m4,core_clock=64MHz";
     let told = of("c99", tight);
     assert!(told.contains("HX0614"), "{told}");
-    assert!(told.contains("in C control at"), "{told}");
+    assert!(told.contains("until control runs at"), "{told}");
+    assert!(told.contains("the largest ratio of C to Rust"), "{told}");
     assert!(!of("rust", tight).contains("in C a step"));
-    assert!(of("datasheet", tight).contains("in Rust it fits"));
+    assert!(of("datasheet", tight).contains("in Rust the step fits"));
     // Nothing says there that the drive is to be in C.
     let checked = run(["check", "hoverboard-hub", "--controller", tight]).stderr;
     assert!(!checked.contains("HX0614"), "{checked}");
@@ -865,6 +867,7 @@ fn values_in_error_are_told_and_nothing_is_written() {
             &["HX0103", "did you mean `resistance`?"],
         ),
         ("colour=red", &["HX0103"]),
+        ("controller=pdcc", &["HX0103", "write `kind = \"pdcc\"`"]),
         ("poles", &["write FIELD=VALUE"]),
         ("rated_speed=400", &["HX0204", "give a unit such as `rpm`"]),
         ("winding=triangle", &["HX0207", "`star` or `delta`"]),

@@ -8,8 +8,8 @@ use crate::plant::{Mechanics, PlantError, PlantParams};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::diagnostics::catalogue::unreadable_board_file;
 use hexagen_codegen::spec::{
-    Board, EmfShape, InverterSpec, SpecAst, apply_variant, motor_text, parse_board, parse_toml,
-    reason_of,
+    Board, EmfShape, Field, InverterSpec, SpecAst, apply_variant, motor_text, parse_board,
+    parse_toml, reason_of,
 };
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -163,16 +163,36 @@ impl SelectedMotor {
             motor, inverter, ..
         } = &self.ast;
         let own = motor.fields.iter().chain(&inverter.fields);
-        let board = self
-            .ast
-            .board
-            .as_ref()
-            .and_then(|board| board.file.as_ref());
-        let of_board = board.into_iter().flat_map(|file| &file.inverter.fields);
-        let of_board = of_board.filter(|field| inverter.field(&field.name).is_none());
+        let of_board = self
+            .board_fields()
+            .iter()
+            .filter(|field| inverter.field(&field.name).is_none());
         let assumed = own.chain(of_board).filter(|field| field.assumed.is_some());
         let assumed = assumed.map(|field| format!("`{}` {}", field.name, field.value));
-        assumed.chain(self.mounting_assumed()).collect()
+        let unstated = self.mounting_assumed().chain(self.sign_assumed());
+        assumed.chain(unstated).collect()
+    }
+
+    /// The inverter's fields of the board.
+    fn board_fields(&self) -> &[Field] {
+        let board = self.ast.board.as_ref();
+        let file = board.and_then(|board| board.file.as_ref());
+        file.map_or(&[], |file| &file.inverter.fields)
+    }
+
+    /// The inverter's field, of the motor file or of its board.
+    fn inverter_field(&self, name: &str) -> Option<&Field> {
+        let own = self.ast.inverter.field(name);
+        own.or_else(|| self.board_fields().iter().find(|field| field.name == name))
+    }
+
+    /// The sign of sensors in the low legs where nobody stated it: amplifiers of shunts are wired either way, and with
+    /// the wrong sign the loop drives the current away from its set-point.
+    fn sign_assumed(&self) -> Option<String> {
+        let place = self.inverter_field("current_sensing")?;
+        let is_low = place.value.to_string() == "low_side";
+        let is_stated = self.inverter_field("adc_inverted").is_some();
+        (is_low && !is_stated).then(|| "`adc_inverted` off".to_owned())
     }
 
     /// How an angle sensor sits on the shaft where nobody stated it: no data sheet tells that.
@@ -192,14 +212,7 @@ impl SelectedMotor {
 
     /// Whether motor file or board states a timer that captures Hall edges.
     pub fn has_edge_timer(&self) -> bool {
-        let board = self
-            .ast
-            .board
-            .as_ref()
-            .and_then(|board| board.file.as_ref());
-        let sections = [Some(&self.ast.inverter), board.map(|file| &file.inverter)];
-        let mut sections = sections.into_iter().flatten();
-        sections.any(|section| section.field("hall_timer_clock").is_some())
+        self.inverter_field("hall_timer_clock").is_some()
     }
 
     /// Like [`Self::prepare`], for commands with a torque set-point: of a drive with a speed loop its current loop,

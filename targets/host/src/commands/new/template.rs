@@ -192,18 +192,18 @@ const INVERTER: &[Line] = &[
     )
     .only_with("shunt", ""),
     needed(
+        &["current_sensing"],
+        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches;\n\
+         # then also settling_time, aperture_time, conversion_time, adc_inverted and sensed_phases).",
+        "in_phase",
+    ),
+    needed(
         &["adc_inverted"],
         "on where counts fall with the current into the motor, as many shunts in the low legs make them; the bring-up\n\
          # measures it.",
         "on",
     )
     .optional(),
-    needed(
-        &["current_sensing"],
-        "in_phase (between legs and motor, as Hall-effect sensors are) or low_side (shunts below the low switches;\n\
-         # then also settling_time, aperture_time, conversion_time and sensed_phases).",
-        "in_phase",
-    ),
     needed(
         &["settling_time"],
         "From the switching of a leg until its amplifier shows the current.",
