@@ -197,7 +197,7 @@ impl Judgement {
             rated_counts: motor.rated_current / inverter.adc_gain.abs(),
             bus_current_limit_a: inverter.bus_currents.drawn,
             return_current_limit_a: inverter.bus_currents.returned,
-            unwatched_return_a: unwatched_return(drive, &points),
+            unwatched_return_a: unwatched_return(drive)?,
             bus_levels: bus_levels(drive, [emf_bus_v, rpm(emf_bus_v / per_speed)]),
             chosen: chosen(drive),
             points,
@@ -454,23 +454,20 @@ fn too_long_in_control(time: &StepTime) -> Option<String> {
 /// A limit of the bus over its nominal voltage within which a battery may come to it.
 const NEAR: f64 = 0.1;
 
-/// Where the drive trips by the voltage of a measured bus, and where its braking fades. Limits near the nominal voltage
-/// that nobody stated are told as such. `emf`: a voltage in volt, and the speed in rpm at which the EMF reaches it.
-/// Current that braking returns to a bus that is not measured, ampere, no more than its limit: the mechanical power less
-/// the loss, which motoring tells at the same torque and speed.
-fn unwatched_return(drive: &Prepared, points: &[Point]) -> Option<f64> {
+/// Current that braking with the demanded torque at rated speed returns to a bus that is not measured, ampere.
+fn unwatched_return(drive: &Prepared) -> Result<Option<f64>, PlantError> {
     let inverter = &drive.spec.inverter;
-    if matches!(inverter.bus, BusSource::Measured { .. }) {
-        return None;
+    if inverter.bus != BusSource::Fixed {
+        return Ok(None);
     }
-    let rated = points.get(SPEEDS.len() - 1)?;
-    let torque = rated.torque_pct? / 100.0 * drive.demand();
-    let mechanical = torque * drive.spec.motor.rated_speed / inverter.v_bus;
-    let returned = 2.0 * mechanical - rated.bus_current_a?;
-    let most = inverter.bus_currents.returned.unwrap_or(f64::INFINITY);
-    Some(returned.min(most)).filter(|returned| *returned > 0.0)
+    let speed = drive.spec.motor.rated_speed;
+    let braking = drive.measure_on_bus(speed, -drive.demand(), inverter.v_bus)?;
+    let returned = braking.figures.bus_current_a.map(|drawn| -drawn);
+    Ok(returned.filter(|returned| *returned > 0.0 && braking.tripped.is_none()))
 }
 
+/// Where the drive trips by the voltage of a measured bus, and where its braking fades. Limits near the nominal voltage
+/// that nobody stated are told as such. `emf`: a voltage in volt, and the speed in rpm at which the EMF reaches it.
 fn bus_levels(drive: &Prepared, emf: [f64; 2]) -> Option<String> {
     let inverter = &drive.spec.inverter;
     let BusSource::Measured {
@@ -538,9 +535,9 @@ fn at_rating(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, PlantE
     Ok(if is_worse { below } else { at })
 }
 
-/// The fixed-point program at a speed in rad/s and a bus voltage, with the demanded torque.
+/// The fixed-point program at a speed in rad/s and a bus voltage, with the demanded torque in its direction.
 fn at_speed(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, PlantError> {
-    let demand = drive.demand();
+    let demand = drive.demand().copysign(omega_m);
     let measured = drive.measure_on_bus(omega_m, demand, bus_v)?;
     let figures = measured.figures;
     let torque_pct = figures.mean_torque_nm.map(|torque| 100.0 * torque / demand);

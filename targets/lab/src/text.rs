@@ -46,7 +46,11 @@ pub const BEYOND: f64 = 1.001;
 /// newton metres; `shown`: how a torque is printed.
 pub fn demanded(torque: f64, reach: f64, shown: impl Fn(f64) -> String) -> String {
     if torque.abs() > reach * BEYOND {
-        format!("{}, limited to {},", shown(torque), shown(reach))
+        format!(
+            "{}, limited to {},",
+            shown(torque),
+            shown(reach.copysign(torque))
+        )
     } else {
         shown(torque)
     }

@@ -68,12 +68,12 @@ pub fn sentence(times: &[StepTime]) -> String {
     )
 }
 
-/// What is told of a step that fits in Rust and may take longer than the control period in C: on the core that is named,
-/// else on that of [`sentence`].
+/// What is told of a step that may take longer than the control period in C, on the core of [`sentence`].
 pub fn longer_in_c(times: &[StepTime]) -> Option<String> {
-    let time = times.first().filter(|time| time.is_too_long_in_c_only())?;
+    let is_longer = |time: &&StepTime| time.most_cycles_in_c() > time.cycles_of_period();
+    let time = times.first().filter(is_longer)?;
     Some(format!(
-        "in C the longest step takes {} % of the control period {} {} at {}: raise `pwm_per_control`",
+        "in C the longest step may take up to {} % of the control period (estimated) {} {} at {}: raise `pwm_per_control`",
         time.percent_of_period(time.most_cycles_in_c() as u32),
         if time.is_named {
             "on the"

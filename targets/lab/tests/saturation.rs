@@ -14,7 +14,7 @@ const LAWS: [&str; 2] = ["pdcc", "pi-pwm"];
 /// Speed over that up to which the bus drives the whole current.
 const SPEED: f64 = 0.85;
 
-/// Bus voltage over the nominal one while it has sunk: too little for the current, more than the EMF.
+/// Bus voltage over the nominal one while it has sunk: too little for the current at most speeds, more than the EMF.
 const SUNK: f64 = 0.78;
 
 /// Sectors for which it has sunk.
@@ -88,7 +88,7 @@ fn recovery(drive: &Prepared, direction: f64) -> (bool, Option<String>) {
 #[test]
 fn the_torque_returns_with_the_bus() {
     let library = SelectedMotor::library(&PlantOptions::default()).expect("is read");
-    let all: Vec<_> = library
+    let all: Vec<(&SelectedMotor, &str)> = library
         .iter()
         .flat_map(|motor| LAWS.map(|law| (motor, law)))
         .collect();

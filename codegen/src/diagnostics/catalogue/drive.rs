@@ -226,7 +226,7 @@ pub struct Beyond {
     pub bus: f64,
     /// The one that the rating takes, volt; none above the limit of a measured bus, or of the board.
     pub raised: Option<f64>,
-    /// Where the inductance takes most of that: the inductance, the pole pairs, and what it takes, volt.
+    /// Where the inductance takes more of that than EMF or resistance: the inductance, the pole pairs, and what it takes, volt.
     pub inductive: Option<(Part, u32, f64)>,
 }
 
@@ -237,7 +237,7 @@ impl Beyond {
             || "check the bases of the EMF constant and `resistance`".to_owned(),
             |(inductance, pairs, taken)| {
                 format!(
-                    "check `inductance` ({}) for the prefix of its unit and `pole_pairs` ({pairs}) for a count of magnets, of which two make a pair: the change of the current through the inductance takes {} alone",
+                    "check `inductance` ({}) for the prefix of its unit, and the {pairs} pole pairs for a count of magnets, of which two make a pair: the change of the current through the inductance takes {} alone",
                     inductance.given,
                     engineering(*taken, "V"),
                 )

@@ -179,7 +179,7 @@ pub(super) fn check_within(
         let low = format!("{}, {counts},", engineering(at_least(least), "A"));
         let high = format!("{}, the trip level", engineering(at_most(trip), "A"));
         let error = match part.field {
-            RETURNED => catalogue::return_current_outside(part, &low, &high),
+            RETURNED if current < least => catalogue::return_current_outside(part, &low, &high),
             field => catalogue::out_of_limits(&part.location, field, &part.given, &low, &high),
         };
         errors.push(error);

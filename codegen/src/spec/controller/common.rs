@@ -349,7 +349,7 @@ pub(crate) const COMMON_MODE: Rule = rule::choice::<CommonMode>("common_mode", "
     .by_default(
         "`readable` with `current_sensing: low_side` or a `minimum_low_time`, else `centred`",
         &[
-            ("readable", "reading the sensors, or `minimum_low_time`, takes low time of the legs"),
+            ("readable", "legs must be low for a while, for their sensors or by `minimum_low_time`"),
             ("centred", "least ripple of the three"),
         ],
     )

@@ -1,9 +1,10 @@
 //! Names of data sheets for what a field takes in its own way. Spelling says nothing about them:
 //! a speed constant is nearer to `torque_constant` by its letters, and its reciprocal by its sense.
 
-use crate::spec::BOARDS;
 use crate::spec::ast::{Field, Value};
+use crate::spec::toml_syntax::parse_board;
 use crate::spec::units::Dimension;
+use crate::spec::{BOARDS, LibraryBoard};
 use crate::timing;
 
 /// What encoders' sheets call the lines of a turn.
@@ -30,6 +31,9 @@ const COUNTS: &[&str] = &[
     "cpr",
     "encoder_cpr",
 ];
+
+/// Counts of some makers; cycles, that is lines, of others.
+const CYCLES: &[&str] = &["cpr", "encoder_cpr"];
 
 /// Fields, and what data sheets call them.
 const NAMES: [(&str, &[&str]); 19] = [
@@ -248,14 +252,10 @@ fn core_of(given: &str) -> Option<(String, String)> {
     };
     // A chip may have other cores beside the one that was counted.
     let counted = timing::chips().map(|chip| (chip.name, chip.target, format!(" ({})", chip.core)));
-    let of_boards = BOARDS.iter().filter_map(|board| {
-        // The core, and below `[source]` the chip that has it.
-        let mut targets = board.text.lines().filter_map(|line| {
-            let value = line.strip_prefix("target = \"")?;
-            value.split(['"', ',']).next()
-        });
-        Some((board.name, targets.next()?, targets.next()?))
-    });
+    let of_boards: Vec<[String; 3]> = BOARDS.iter().filter_map(core_of_board).collect();
+    let of_boards = of_boards
+        .iter()
+        .map(|[board, core, chip]| (&**board, &**core, &**chip));
     let chips = of_boards.clone();
     let mut chips = counted.chain(chips.map(|(_, core, chip)| (chip, core, String::new())));
     let chip = chips.find(|(chip, ..)| is_chip(chip));
@@ -269,6 +269,16 @@ fn core_of(given: &str) -> Option<(String, String)> {
         .map(|(chip, core, counted)| (format!("the chip {chip}{counted}"), core))
         .or_else(board)?;
     Some((name, core.to_owned()))
+}
+
+/// The name of a board of the library, its core and its chip, of whose source the first words tell it.
+fn core_of_board(board: &LibraryBoard) -> Option<[String; 3]> {
+    const TARGET: &str = "target";
+    let file = parse_board(board.text, board.name).ok()?;
+    let core = file.core.field(TARGET)?.value.to_string();
+    let (_, source) = file.source.iter().find(|(key, _)| key == TARGET)?;
+    let chip = source.split(',').next()?;
+    Some([board.name.to_owned(), core, chip.to_owned()])
 }
 
 /// The word that another one stands for.
@@ -346,7 +356,13 @@ fn remedy_of_encoder(field: &Field) -> String {
             "write `{FIELD}`, from 8 to 32: the base-2 logarithm of the counts in a turn, which are four of each line"
         );
     };
-    let of_lines = if is_lines { ", four of each line" } else { "" };
+    let of_lines = if is_lines {
+        ", four of each line"
+    } else if CYCLES.contains(&field.name.to_lowercase().as_str()) {
+        " (two bits more where the sheet counts lines by it)"
+    } else {
+        ""
+    };
     let rounded = if counts.is_power_of_two() {
         ""
     } else {

@@ -68,7 +68,7 @@ pub fn beyond_limit(inverter: &InverterSpec, bus_current: f64) -> Option<String>
     limits.into_iter().find_map(|(name, limit, current)| {
         let limit = limit.filter(|limit| current > 1.02 * limit)?;
         Some(format!(
-            "the bus current is above `{name}` of {} still: behind a step of the set-point the drive takes the torque back over many control periods, as --csv shows; a `slew_rate` keeps it from being exceeded",
+            "the bus current is above `{name}` of {}: behind a step of the set-point the drive takes the torque back over many control periods, which --csv shows and a `slew_rate`, or a lower one, avoids; with another bus or other sensors than the file's the bus current that it computes is another one, too",
             engineering(limit, "A")
         ))
     })

@@ -122,8 +122,8 @@ pub fn run(options: &Options) -> Result<(), Failure> {
         print_text("")?;
         print_table(&coverage_table(&results))?;
         print_text(&paragraph(
-            "Shares of the steps: in control; of those, limited to the voltage of the bus, and beyond its reach along the EMF; \
-             in a commutation of phases; with an angle between Hall edges, and of these backward. Start: calibration, pre-charge and \
+            "Shares of all steps: limited to the voltage of the bus; beyond its reach along the EMF, as far as a law tells it; \
+             in a commutation of phases; with an angle between Hall edges; with such an angle backward. Start: calibration, pre-charge and \
              the wait for the rotor's angle.",
         ))?;
     }

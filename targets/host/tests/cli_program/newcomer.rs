@@ -295,7 +295,8 @@ fn what_nobody_measured_is_told_and_why_the_current_is_limited() {
     let stated = "`rated_torque` 128 mNm is taken as stated; the rated 3.21 A makes 118.4 mNm as a block, in the mean (36.9 mNm/A), and 107.4 mNm as the peak of a sine (33.46 mNm/A)\n";
     assert!(said.stderr.contains(stated), "{said:?}");
     assert!(
-        said.stdout.contains("; 33.46 mNm/A of sine; 181 g cm2\n"),
+        said.stdout
+            .contains("; 33.46 mNm/A (peak of a sine); 181 g cm2\n"),
         "{said:?}"
     );
     let heat = "heats no more than a block of the rated 3.21 A";
@@ -323,7 +324,7 @@ fn a_rated_torque_of_the_rated_current_is_not_noted() {
     }
     let said = run(["check", PAPER]);
     assert!(
-        said.stdout.contains(" mNm/A of block") || said.stdout.contains(" Nm/A of block"),
+        said.stdout.contains("; 164.8 mNm/A (of a block)\n"),
         "{said:?}"
     );
 }
@@ -515,7 +516,7 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
     let out = tempfile::tempdir().expect("a temporary folder");
     let out = out.path().to_str().expect("a path");
     let told = run(["generate", "hurst-long", "--emit", "c99", "--out", out]).stderr;
-    let longest = "in C the longest step takes 102 % of the control period if the core is a Cortex-M4 at 170 MHz";
+    let longest = "in C the longest step may take up to 102 % of the control period (estimated) if the core is a Cortex-M4 at 170 MHz";
     assert!(told.contains(longest), "{told}");
 }
 

@@ -494,7 +494,7 @@ fn a_speed_loop_that_does_not_settle_says_so() {
     assert!(
         stalled
             .stderr
-            .contains("did not turn on within the stall time-out"),
+            .contains("no Hall edge and no new angle came within the stall time-out"),
         "{}",
         stalled.stderr
     );
@@ -774,7 +774,7 @@ fn the_bus_gives_the_power_of_shaft_and_windings() {
     }
     let check = run(["check", PAPER]).stdout;
     assert!(
-        check.contains("; bus mean 16.44 A, braking -12 A"),
+        check.contains("; bus mean 16.44 A, 12 A back in braking"),
         "{check}"
     );
 }

@@ -69,7 +69,7 @@ impl fmt::Display for Cause {
             Self::AdcRange => "a current ADC was at an end of its range",
             Self::OverCurrent => "a phase current exceeded the trip level",
             Self::Hall => "a Hall code was invalid",
-            Self::Stall => "the rotor did not turn on within the stall time-out (no Hall edge, or no new angle)",
+            Self::Stall => "no Hall edge and no new angle came within the stall time-out",
             Self::Offset => "a current offset was too far from its nominal value",
             Self::OverVoltage => "the bus voltage was above `over_voltage`",
             Self::UnderVoltage => "the bus voltage was below `under_voltage`",

@@ -3,7 +3,7 @@
 use crate::commands::cut::{followed, least_held};
 use hexagen_codegen::diagnostics::engineering;
 use hexagen_codegen::spec::{
-    CurrentSensing, EmfShape, Envelope, InverterSpec, MotorSpec, RotorSensing, SpeedLoop,
+    BusSource, CurrentSensing, EmfShape, Envelope, InverterSpec, MotorSpec, RotorSensing, SpeedLoop,
 };
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::{Judgement, Point};
@@ -206,8 +206,8 @@ fn of_bus(judgement: &Judgement, drive: &Prepared) -> String {
         engineering(judgement.rating_v, "V"),
         end.floor(),
         why.unwrap_or_default(),
-        if judgement.unwatched_return_a.is_some() {
-            "; not watched"
+        if drive.spec.inverter.bus == BusSource::Fixed {
+            "; not measured"
         } else {
             ""
         },
@@ -263,7 +263,7 @@ fn of_current(judgement: &Judgement, motor: &MotorSpec, inverter: &InverterSpec)
     let drawn = drawn.map_or(String::new(), |mean| {
         let returned = judgement.unwatched_return_a.map(|returned| {
             let returned = significant(returned, 2);
-            format!(", braking -{returned} A")
+            format!(", {returned} A back in braking")
         });
         format!(
             "; bus mean {}{}",
