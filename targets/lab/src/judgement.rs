@@ -531,7 +531,8 @@ fn at_rating(drive: &Prepared, omega_m: f64, bus_v: f64) -> Result<Point, PlantE
         return Ok(at);
     }
     let below = at_speed(drive, JUST_BELOW * omega_m, bus_v)?;
-    let is_worse = below.torque_pct.unwrap_or(0.0) < at.torque_pct.unwrap_or(0.0) - ALIKE;
+    let lost = at.torque_pct.unwrap_or(0.0) - below.torque_pct.unwrap_or(0.0);
+    let is_worse = lost > ALIKE || (lost > -ALIKE && below.ripple_pp_pct > at.ripple_pp_pct);
     Ok(if is_worse { below } else { at })
 }
 

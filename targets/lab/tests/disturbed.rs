@@ -1,6 +1,6 @@
 //! One disturbance at a time, at rated torque: the current stays what was asked for, with little ripple.
 
-use hexagen_codegen::spec::{Envelope, Spec};
+use hexagen_codegen::spec::{Envelope, MOST_RIPPLE, Spec};
 use hexagen_lab::closed_loop::{Measurement, measure};
 use hexagen_lab::engine::{
     Model, MotorSource, PlantOptions, Prepared, SelectedMotor, prepare, run_of,
@@ -123,13 +123,16 @@ impl Disturbance {
         Envelope::of(&real).speed(torque).unwrap_or_default()
     }
 
-    /// Least torque and greatest ripple, percent of the demand.
+    /// Least torque and greatest ripple, percent of the demand; what edges that are seen at samples make of it comes on
+    /// top.
     fn limits(self, spec: &Spec) -> [f64; 2] {
         let fine = degrees_per_period(spec) <= 12.0;
-        match self {
+        let of_edges = 100.0 * spec.sampled_ripple().unwrap_or(0.0);
+        let [torque, ripple] = match self {
             UnstatedDeadTime => [96.0, 9.0],
             _ => [99.0, if fine { 5.0 } else { 7.0 }],
-        }
+        };
+        [torque, ripple + of_edges]
     }
 }
 
@@ -232,6 +235,40 @@ fn no_disturbance_changes_the_current_or_makes_it_ripple() {
         let here = |miss: &Miss| miss.motor == *motor && miss.disturbance == *disturbance;
         assert!(misses.iter().any(here), "{motor} {disturbance:?} is right");
     }
+}
+
+/// The same with Hall edges that are seen at samples, on motors of which no warning tells that they ripple by that.
+#[test]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
+fn an_observer_of_sampled_edges_bears_the_same_disturbances() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
+    // Some have no Hall sensors.
+    let drives = motors.iter().flat_map(|motor| {
+        VARIANTS.into_iter().filter_map(|variant| {
+            let variant = format!("{variant}:hall_capture=sampled");
+            prepare(&motor.source, Some(&variant)).ok()
+        })
+    });
+    let is_smooth = |drive: &Prepared| {
+        let ripple = drive.spec.sampled_ripple();
+        ripple.is_some_and(|ripple| ripple <= MOST_RIPPLE)
+    };
+    let drives: Vec<Prepared> = drives.filter(is_smooth).collect();
+    assert!(drives.len() >= 10, "{} drives", drives.len());
+    let found = drives.par_iter().flat_map_iter(|drive| {
+        // The dead time of a drive stands in its file.
+        let others = DISTURBANCES
+            .into_iter()
+            .filter(|what| *what != StatedDeadTime);
+        others.flat_map(move |disturbance| {
+            SPEEDS.into_iter().flat_map(move |speed| {
+                let at = move |signs| miss(drive, disturbance, speed, signs);
+                QUADRANTS.into_iter().filter_map(at)
+            })
+        })
+    });
+    let found: Vec<String> = found.map(|miss| miss.text).collect();
+    assert!(found.is_empty(), "{found:#?}");
 }
 
 /// The observer corrects the EMF along its own shape. Along the proportional current, which is short where the EMF is

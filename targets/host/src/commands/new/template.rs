@@ -163,7 +163,7 @@ const INVERTER: &[Line] = &[
     needed(&["bus_voltage"], "Nominal supply of the inverter.", "48 V"),
     needed(
         &["f_pwm", "sampling_time"],
-        "PWM frequency = control frequency.",
+        "PWM frequency; the control frequency too, unless `pwm_per_control` is above 1.",
         "20 kHz",
     )
     .or("20 kHz"),
