@@ -153,7 +153,7 @@ fn verified(data: &Results) -> String {
             let (steps, engine) = (grouped(check.steps), &check.engine);
             match check.mismatches {
                 0 => {
-                    format!("{steps} steps of {engine} code, all controllers of this page together, equal the bit-true model, every bit")
+                    format!("{steps} steps of {engine} code of all controllers here equal the bit-true model, every bit")
                 }
                 wrong => {
                     format!("NOT: {engine} code of {wrong} controllers differs from the model")
