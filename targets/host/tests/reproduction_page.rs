@@ -21,14 +21,16 @@ fn render() -> String {
 #[test]
 fn tables_and_figures_are_there_in_the_papers_order() {
     let ids = [
-        "claims",
         "readings",
+        "claims",
         "table-1",
         "table-2",
         "table-3",
+        "table-4",
         "figure-2",
         "figure-3",
         "figure-4",
+        "figure-5",
         "figure-9",
         "figure-12",
         "figure-14",
@@ -49,10 +51,12 @@ fn tables_and_figures_are_there_in_the_papers_order() {
         })
         .collect();
     assert!(places.is_sorted(), "{places:?}");
-    // Figures 2, 3, 4, 9, 12 and 13; per speed seven runs (one drive trips) as current, torque and
+    // Figures 2, 3, 4, 5, 9, 12 and 13; per speed seven runs (one drive trips) as current, torque and
     // trajectory, four spectra and two harmonics; two torque-speed plots.
     let plots = PAGE.matches("<div class=\"plot\"").count();
-    assert_eq!(plots, 9 + 2 * (3 * 7 + 4 + 2) + 2);
+    assert_eq!(plots, 10 + 2 * (3 * 7 + 4 + 2) + 2);
+    // The drive that tripped at both speeds.
+    assert_eq!(PAGE.matches("tripped</td>").count(), 2);
 }
 
 #[test]

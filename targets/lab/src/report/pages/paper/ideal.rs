@@ -1,4 +1,4 @@
-//! Figures without a run: 2, 3, 9, 12 and 13.
+//! Figures without a run: 2, 3, 5, 9, 12 and 13.
 
 use super::tables::{emf, emf_corner};
 use crate::closed_loop::{harmonic_of_quasi_square, hexagon};
@@ -81,13 +81,28 @@ pub fn figure_3(data: &Reproduction) -> Vec<Block> {
     }]
 }
 
+/// Figure 5: the vectors.
+pub fn figure_5(data: &Reproduction) -> Vec<Block> {
+    let description = "The voltage vectors in the alpha-beta plane";
+    let caption = "V1 to V6 are 2V_{d}/3 long, V12 to V61 V_{d}/\u{221a}3";
+    vectors(data, description, caption, false)
+}
+
 /// Figure 9: the plane in twelve sectors, with the vectors at their boundaries.
 pub fn figure_9(data: &Reproduction) -> Vec<Block> {
+    let description = "The alpha-beta plane in twelve sectors with the voltage vectors";
+    let caption = "The vectors divide the plane into twelve sectors of 30\u{b0}, numbered from the alpha axis";
+    vectors(data, description, caption, true)
+}
+
+/// The vectors in the plane, which is divided into twelve sectors or not.
+fn vectors(data: &Reproduction, description: &str, caption: &str, is_divided: bool) -> Vec<Block> {
     let v_bus = data.inverter.v_bus;
     let reach = 0.85 * v_bus;
     let tips = |legs: [LegSigns; 6]| legs.map(|legs| leg_vector(legs, v_bus)).map(|v| (v.x, v.y));
     let (three, two) = (tips(THREE_PHASE), tips(TWO_PHASE));
-    let rays = (0..12).map(|k| {
+    let sectors = if is_divided { 12 } else { 0 };
+    let rays = (0..sectors).map(|k| {
         let (sin, cos) = (f64::from(k) * FRAC_PI_6).sin_cos();
         let length = reach / cos.abs().max(sin.abs());
         ray((length * cos, length * sin))
@@ -106,7 +121,7 @@ pub fn figure_9(data: &Reproduction) -> Vec<Block> {
         .map(|(k, tip)| named(tip, format!("V{k}"), true));
     let two_names = (1..).zip(two);
     let two_names = two_names.map(|(k, tip)| named(tip, format!("V{k}{}", k % 6 + 1), true));
-    let sectors = (1..=12).map(|k| {
+    let numbers = (1..=sectors).map(|k| {
         let (sin, cos) = ((f64::from(k) - 0.5) * FRAC_PI_6).sin_cos();
         named(
             (0.33 * v_bus * cos, 0.33 * v_bus * sin),
@@ -115,7 +130,7 @@ pub fn figure_9(data: &Reproduction) -> Vec<Block> {
         )
     });
     let plot = plane(Plane {
-        description: "The alpha-beta plane in twelve sectors with the voltage vectors".to_owned(),
+        description: description.to_owned(),
         titles: ["v_alpha in V", "v_beta in V"],
         reach,
         width: 550.0,
@@ -124,9 +139,8 @@ pub fn figure_9(data: &Reproduction) -> Vec<Block> {
             .chain(vectors(three, 0))
             .chain(vectors(two, 1))
             .collect(),
-        points: three_names.chain(two_names).chain(sectors).collect(),
+        points: three_names.chain(two_names).chain(numbers).collect(),
     });
-    let caption = "The vectors divide the plane into twelve sectors of 30\u{b0}, numbered from the alpha axis";
     vec![
         Block::Legend(vec![
             Sign::line(variant(0), 2.5).means("three-phase vectors V1 to V6"),

@@ -249,10 +249,15 @@ fn torque_table(data: &Reproduction, speed: usize) -> Table {
     for method in Method::ALL {
         table.group(Label::Beside(lettered(method).into()));
         for reading in Reading::ALL {
-            let figures = &point(data, (method, reading, speed)).figures;
+            let point = point(data, (method, reading, speed));
+            let figures = &point.figures;
+            let mean = match point.trip {
+                Some(_) => "tripped".to_owned(),
+                None => number(figures.mean_torque_nm, 3),
+            };
             table.row([
                 reading.name().to_owned(),
-                number(figures.mean_torque_nm, 3),
+                mean,
                 ripple(figures.ripple_pp_pct),
                 ripple(figures.ripple_rms_pct),
                 ripple(figures.h6_pct),

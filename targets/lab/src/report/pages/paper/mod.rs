@@ -44,8 +44,8 @@ pub fn reproduction_blocks(data: &Reproduction) -> Vec<Block> {
 /// Tables and figures in the paper's order.
 fn sections(data: &Reproduction) -> Vec<Section> {
     let computed = vec![
-        Section::new("claims", "Claims", verdicts::claims(data)),
         Section::new("readings", "Readings", verdicts::readings(data)),
+        Section::new("claims", "Claims", verdicts::claims(data)),
         Section::new(
             "table-1",
             "Table 1: reference and EMF corners",
@@ -53,6 +53,7 @@ fn sections(data: &Reproduction) -> Vec<Section> {
         ),
         Section::new("table-2", "Table 2: vectors", tables::table_2(data)),
         Section::new("table-3", "Table 3: switching table", tables::table_3(data)),
+        Section::new("table-4", "Table 4: the motor", tables::table_4(data)),
         Section::new(
             "figure-2",
             "Figure 2: EMF, currents, Hall signals",
@@ -68,6 +69,7 @@ fn sections(data: &Reproduction) -> Vec<Section> {
             "Figure 4: real trajectories",
             measured::figure_4(data),
         ),
+        Section::new("figure-5", "Figure 5: vectors", ideal::figure_5(data)),
         Section::new(
             "figure-9",
             "Figure 9: twelve sectors",

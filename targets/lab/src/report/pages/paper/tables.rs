@@ -1,4 +1,4 @@
-//! Tables 1, 2, 3 and 5.
+//! Tables 1 to 5.
 
 use super::verdicts::lettered;
 use crate::report::{Block, Cell, Column, Label, Table};
@@ -204,6 +204,55 @@ pub fn table_3(data: &Reproduction) -> Vec<Block> {
          reading rotates the printed row through the sectors."
     );
     vec![Block::Table(table), Block::Note(note)]
+}
+
+/// Table 4: the motor's data as printed, and as the file states them.
+pub fn table_4(data: &Reproduction) -> Vec<Block> {
+    let (motor, inverter) = (&data.motor, &data.inverter);
+    let line_to_line = motor.emf_constant * motor.emf_shape.line_to_line_peak();
+    let rpm = motor.rated_speed * 60.0 / TAU;
+    let torque = motor.rated_torque.unwrap_or(data.torque);
+    let rows = [
+        ("pole pairs", "4", motor.pole_pairs.to_string(), ""),
+        (
+            "inductance",
+            "0.22 mH",
+            quantity(motor.inductance, "H"),
+            "\u{201c}inclusive phase inductance\u{201d}: that of one phase of a star, its mutual inductance included",
+        ),
+        (
+            "resistance",
+            "0.135 ohm",
+            quantity(motor.resistance, "ohm"),
+            "of one phase of a star",
+        ),
+        ("rated torque", "3.3 Nm", quantity(torque, "Nm"), ""),
+        (
+            "rated speed",
+            "2000 rpm",
+            format!("{} rpm", number(rpm, 0)),
+            "",
+        ),
+        (
+            "rated current",
+            "20 A",
+            quantity(motor.rated_current, "A"),
+            "the height of the quasi-square wave",
+        ),
+        ("bus voltage", "48 V", quantity(inverter.v_bus, "V"), ""),
+        (
+            "k_{b}",
+            "0.1648 V s/rad",
+            quantity(line_to_line, "V s/rad"),
+            "line to line: 0.1648 V s/rad times 20 A are the rated torque, and as a phase constant the EMF would exceed the bus",
+        ),
+    ];
+    let names = ["Quantity", "Printed", "Used here", "Reading"];
+    let mut table = Table::new("", names.map(Column::text));
+    for (name, printed, used, reading) in rows {
+        table.row([name, printed, &used, reading].map(str::to_owned));
+    }
+    vec![Block::Table(table)]
 }
 
 /// Table 5: instructions, computation time, free time, switching frequency.
