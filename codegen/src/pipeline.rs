@@ -157,6 +157,9 @@ fn long_step<'a>(time: &'a StepTime, origins: &'a Origins) -> catalogue::LongSte
     }
 }
 
+/// Bus voltage over that of the envelope at which a drive makes its whole torque: sampling and dead time take a little.
+const ROOM: f64 = 1.01;
+
 /// Warns of a rating beyond the drive's envelope.
 fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
     const SPEED: &str = "motor.rated_speed";
@@ -184,7 +187,7 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
             torques: [torque, envelope.torque(rated)],
             speed: envelope.speed(torque),
             bus,
-            raised: Some(taken).filter(|taken| {
+            raised: Some(ROOM * taken).filter(|taken| {
                 let is_of_board = origins.board_bus().is_none_or(|most| *taken <= most);
                 // A turned current takes less than `taken`.
                 let is_turned = envelope.weakening.is_some();

@@ -29,28 +29,35 @@ fn narrow(range: &Part) -> String {
     }
 }
 
+/// Sensors that reach less than this share of the rated current belong to another motor, or their value is wrong.
+const OF_OTHER_MOTOR: f64 = 0.01;
+
 /// The current sensors do not reach the rated current, which the largest set-point is at least by default;
 /// `reach`, and the largest set-point `most` that leaves room to trip, if it is known: ampere.
 pub fn adc_range_too_small(
     range: &Part,
-    rated: &Part,
+    (rated, current): (&Part, f64),
     reach: f64,
     most: Option<f64>,
 ) -> Diagnostic {
     let most = most.map_or(String::new(), |most| {
         format!(" of at most {}", engineering(at_most(most), "A"))
     });
+    let remedy = if reach < OF_OTHER_MOTOR * current {
+        "it is likely a thousandfold off: check the number and the prefix of its unit".to_owned()
+    } else {
+        format!("{}, or state a `max_current`{most}", widen(range))
+    };
     with_parts(
         Diagnostic::new(
             Code::AdcRangeTooSmall,
             &range.location,
             format!(
-                "`{}`: {} measures up to {}, below the rated current of {}; {}, or state a `max_current`{most}",
+                "`{}`: {} measures up to {}, below the rated current of {}; {remedy}",
                 range.field,
                 range.given,
                 engineering(at_most(reach), "A"),
                 rated.given,
-                widen(range),
             ),
         ),
         &[rated],

@@ -138,7 +138,7 @@ fn beyond_sensors(
         // Whole vectors and bands need more than the reference's peak.
         let modulated = drive.filter(|drive| drive.reach() <= drive.peak());
         let most = modulated.map(|drive| drive.largest_below(greatest_trip(inverter, adc)));
-        catalogue::adc_range_too_small(&adc.bound, &rated.part, adc.reach, most)
+        catalogue::adc_range_too_small(&adc.bound, (&rated.part, rated.si), adc.reach, most)
     })
 }
 
