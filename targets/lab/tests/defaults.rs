@@ -178,6 +178,28 @@ fn every_library_motor_is_right_with_an_encoder() {
     check(&drives.collect::<Vec<_>>(), &LIBRARY);
 }
 
+/// What counts as a limit of the data is one: exact control ripples no more than the drive where that is right.
+#[test]
+fn exact_control_ripples_no_more_than_a_drive() {
+    let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
+    let found = prepared(&motors).into_iter().flat_map(|drive| {
+        let points = Points::of(&drive).all;
+        let forward = points
+            .iter()
+            .filter(|(_, speed, mode)| *speed > 0 && *mode > 0);
+        let rougher = forward.filter_map(|(point, speed, _)| {
+            let least = least_ripple(&drive, *speed as u32)?;
+            let ripple = point.ripple_pct?;
+            println!("{} {speed} %: {least:.2} and {ripple:.2}", drive.motor);
+            (least > ripple + 0.2)
+                .then(|| format!("{} {speed} %: {least} and {ripple}", drive.motor))
+        });
+        rougher.collect::<Vec<_>>()
+    });
+    let found: Vec<String> = found.collect();
+    assert!(found.is_empty(), "{found:#?}");
+}
+
 /// Motors of other makers, on which nothing is tuned.
 #[test]
 fn every_motor_set_aside_is_right_by_default() {
