@@ -13,7 +13,7 @@ pub fn paragraph(text: &str) -> String {
     filled(text, "")
 }
 
-/// A verdict and its rows in lines of at most 100 columns. Where they are more than `most`, each row keeps the
+/// A verdict and its rows in lines of at most 100 columns. Where they are more than `most`, the first rows keep the
 /// clauses that fit into one line, and the verdict those that fit into two; `rest` says where the others stand.
 pub fn verdict_lines(head: &str, rows: &[(&str, String)], most: usize, rest: &str) -> Vec<String> {
     let row = |(title, text): &(&str, String)| format!("{title:<12}{text}");
@@ -25,9 +25,18 @@ pub fn verdict_lines(head: &str, rows: &[(&str, String)], most: usize, rest: &st
     if lines <= most {
         return whole;
     }
-    std::iter::once(short_verdict(head, rest))
+    let mut lines: Vec<String> = std::iter::once(short_verdict(head, rest))
         .chain(rows.iter().map(|line| short_row(&row(line))))
-        .collect()
+        .collect();
+    let of = |row: &str| row.lines().count();
+    let mut count: usize = lines.iter().map(|row| of(row)).sum();
+    for (short, whole) in lines.iter_mut().zip(whole).skip(1).rev() {
+        let with_whole = count + of(&whole) - of(short);
+        if with_whole <= most {
+            (*short, count) = (whole, with_whole);
+        }
+    }
+    lines
 }
 
 /// Between the clauses of a row.
@@ -123,7 +132,9 @@ mod tests {
         let head = format!("hub: works, but {long}; {long}; {long}; see the warnings");
         let whole = verdict_lines(&head, &rows, 6, "with --all");
         assert!(whole.join("\n").contains("see the warnings"), "{whole:#?}");
-        let short = verdict_lines(&head, &rows, 4, "with --all");
+        let longer = verdict_lines(&head, &rows, 4, "with --all");
+        assert_eq!(longer[1], whole[1]);
+        let short = verdict_lines(&head, &rows, 3, "with --all");
         assert_eq!(short[1], format!("{:<12}{long}; of 3 Nm …", "torque"));
         assert!(short[0].ends_with("; 2 more with --all"), "{short:#?}");
         assert_eq!(short[0].lines().count(), 2, "{short:#?}");

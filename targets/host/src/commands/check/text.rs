@@ -89,8 +89,8 @@ pub(super) fn stated_torque(motor: &MotorSpec) -> Option<String> {
 /// Basis of the torque per ampere: of which current the ampere is the peak.
 fn basis(shape: EmfShape) -> &'static str {
     match shape {
-        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => "(peak of a sine)",
-        EmfShape::Trapezoidal { .. } => "(of a block)",
+        EmfShape::Sinusoidal | EmfShape::Harmonics(_) => "of a sine",
+        EmfShape::Trapezoidal { .. } => "of a block",
     }
 }
 
