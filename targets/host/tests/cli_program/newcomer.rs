@@ -306,7 +306,7 @@ fn what_nobody_measured_is_told_and_why_the_current_is_limited() {
     text = text.replace("[controller]", stated);
     fs::write(path, text).expect("can be written");
     let said = run(["check", path]);
-    let note = "assumed, so measure: `angle_direction` forward, `adc_inverted` off\n";
+    let note = "assumed, so measure: `angle_direction` forward\n";
     assert!(said.stderr.contains(note), "{said:?}");
     let heat = "heats more than a block of the rated 3.21 A";
     assert!(words(&said.stdout).contains(heat), "{said:?}");
@@ -353,7 +353,7 @@ fn check_runs_a_drive_at_another_speed() {
     let at = |rpm: &str| run(["check", PAPER, "--rpm", rpm]);
     for (asked, told) in [
         ("1200", "; at 1200 rpm 100 %,"),
-        ("125.66rad/s", "; at 1200 rpm 100 %,"),
+        ("125.66rad/s", "; at 1200 rpm 100.0 %,"),
     ] {
         let said = at(asked);
         assert_eq!(said.code, 0, "{said:?}");
