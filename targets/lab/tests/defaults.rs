@@ -222,9 +222,9 @@ const DRAWN: [usize; 2] = [20, 200];
 /// Draws whose starts are tried.
 const STARTED: usize = 20;
 
-/// Nearly all points are right but those that bus or control period limit by the data of motor and inverter: of the
-/// nightly run's 3200 points 14 are so limited, and 84 more, of 17 motors, ripple by up to 9.8 % or miss the torque
-/// by 1.02 %. No start fails.
+/// Nearly all points are right but those that bus, control period or timer limit by the data of motor and inverter: of
+/// the nightly run's 3200 points 30 more are not, of five motors, and 24 of these of two motors whose current a count
+/// of their timer moves by 1.5 % of the rated one. No start fails.
 #[test]
 fn random_motors_are_right_by_default() {
     // Motors with an edge timer, and periods short enough for them.
@@ -247,7 +247,7 @@ fn random_motors_are_right_by_default() {
     let tripping: Vec<_> = trips.map(|(at, ..)| at).collect();
     assert!(tripping.is_empty(), "{tripping:?}");
     assert!(
-        30 * wrong.len() < 16 * drawn.len(),
+        80 * wrong.len() < 16 * drawn.len(),
         "{}: {wrong:#?}",
         wrong.len()
     );
