@@ -314,11 +314,6 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
         .collect()
 }
 
-/// The chips with figures.
-pub fn chips() -> impl Iterator<Item = &'static Chip> {
-    CHIPS.iter()
-}
-
 /// Largest ratio of a drive's time in C to its time in Rust on a core, and the compiler.
 pub fn in_c(target: &str) -> Option<(&'static str, Times<f64>)> {
     let chip = CHIPS.iter().find(|chip| chip.target == target)?;

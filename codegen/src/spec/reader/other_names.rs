@@ -5,7 +5,6 @@ use crate::spec::ast::{Field, Value};
 use crate::spec::toml_syntax::parse_board;
 use crate::spec::units::Dimension;
 use crate::spec::{BOARDS, LibraryBoard};
-use crate::timing;
 
 /// What encoders' sheets call the lines of a turn.
 const LINES: &[&str] = &[
@@ -238,7 +237,7 @@ pub(super) fn kin(given: &str, known: &[&str]) -> Option<String> {
 /// Fewest letters of a chip's name that tell its family, as `stm32g4`.
 const FAMILY: usize = 7;
 
-/// The core of a chip or of a board of the library, with its name; of a chip the beginning of its name is enough, and
+/// The core of a board of the library or of its chip, with its name; of a chip the beginning of its name is enough, and
 /// more may follow.
 fn core_of(given: &str) -> Option<(String, String)> {
     let plain = |name: &str| {
@@ -250,25 +249,11 @@ fn core_of(given: &str) -> Option<(String, String)> {
         let chip = plain(name);
         given.starts_with(&chip) || (given.len() >= FAMILY && chip.starts_with(&given))
     };
-    // A chip may have other cores beside the one that was counted.
-    let counted = timing::chips().map(|chip| (chip.name, chip.target, format!(" ({})", chip.core)));
-    let of_boards: Vec<[String; 3]> = BOARDS.iter().filter_map(core_of_board).collect();
-    let of_boards = of_boards
-        .iter()
-        .map(|[board, core, chip]| (&**board, &**core, &**chip));
-    let chips = of_boards.clone();
-    let mut chips = counted.chain(chips.map(|(_, core, chip)| (chip, core, String::new())));
-    let chip = chips.find(|(chip, ..)| is_chip(chip));
-    let mut boards = of_boards.filter(|(board, ..)| plain(board) == given);
-    let board = || {
-        boards
-            .next()
-            .map(|(board, core, _)| (format!("the board {board}"), core))
-    };
-    let (name, core) = chip
-        .map(|(chip, core, counted)| (format!("the chip {chip}{counted}"), core))
-        .or_else(board)?;
-    Some((name, core.to_owned()))
+    let boards: Vec<[String; 3]> = BOARDS.iter().filter_map(core_of_board).collect();
+    let chip = boards.iter().find(|[_, _, chip]| is_chip(chip));
+    let chip = chip.map(|[_, core, chip]| (format!("the chip {chip}"), core.clone()));
+    let board = boards.iter().find(|[board, ..]| plain(board) == given);
+    chip.or_else(|| board.map(|[board, core, _]| (format!("the board {board}"), core.clone())))
 }
 
 /// The name of a board of the library, its core and its chip, of whose source the first words tell it.
