@@ -194,7 +194,7 @@ impl<'a> Reader<'a> {
                 _ => "pdcc",
             };
             return Some(format!(
-                "the controller is none of a motor's fields: in a file it is the `kind` of the section `controller`, in a call it stands beside `motor`, and `hexagen new` takes `kind={kind}`"
+                "the controller stands elsewhere: in a file it is the `kind` of the section `controller`, in a call it stands beside `motor`, and `hexagen new` takes `kind={kind}`"
             ));
         }
         let meant = other_names::meant(&field.name)?;

@@ -36,12 +36,22 @@ pub fn cut_by(
 
 /// A speed in rpm, or the greatest that the drive follows, and in that case why it ends there.
 pub fn followed(drive: &Prepared, rpm: f64) -> (f64, Option<&'static str>) {
-    let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
+    let most = drive.maximum_rpm();
     if rpm > most {
         (most, Some(", maximum_speed"))
     } else {
         (rpm, None)
     }
+}
+
+/// What is told of a speed in rpm that the drive does not follow.
+pub fn beyond_followed(drive: &Prepared, rpm: f64) -> Option<String> {
+    let most = drive.maximum_rpm();
+    (rpm.abs() > most * (1.0 + 1e-9)).then(|| {
+        format!(
+            "--rpm {rpm}: beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor"
+        )
+    })
 }
 
 /// Least speed that a speed loop holds, rpm, where the mean over an electrical turn of Hall edges tells it.
@@ -68,7 +78,7 @@ pub fn beyond_limit(inverter: &InverterSpec, bus_current: f64) -> Option<String>
     limits.into_iter().find_map(|(name, limit, current)| {
         let limit = limit.filter(|limit| current > 1.02 * limit)?;
         Some(format!(
-            "the bus current is above `{name}` of {}: behind a step of the set-point the drive takes the torque back over many control periods, which --csv shows and a `slew_rate`, or a lower one, avoids; with another bus or other sensors than the file's the bus current that it computes is another one, too",
+            "the bus current is above `{name}` of {}: behind a step of the set-point the drive takes the torque back over many control periods, which --csv shows and a `slew_rate`, or a lower one, avoids; the drive computes this current, so a bus or sensors unlike the file's move its limit, too",
             engineering(limit, "A")
         ))
     })
