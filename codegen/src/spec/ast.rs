@@ -147,6 +147,14 @@ pub struct BoardFile {
     pub malformed: Vec<Diagnostic>,
 }
 
+impl BoardFile {
+    /// What the file says of where a field's value comes from.
+    pub fn source_of(&self, field: &str) -> Option<&str> {
+        let (_, text) = self.source.iter().find(|(name, _)| name == field)?;
+        Some(text)
+    }
+}
+
 /// A name that no file holds: of a command line, or of a build script.
 impl From<&str> for Name {
     fn from(text: &str) -> Self {

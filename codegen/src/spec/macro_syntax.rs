@@ -214,8 +214,8 @@ fn location(tokens: &[TokenTree]) -> Location {
 }
 
 impl Entry {
-    /// Whether the next entry is none but continues this one's value: a number behind a number, or behind a word one that
-    /// is no field's name.
+    /// Whether the next entry is a part of this one's value, behind a comma: a number behind a number, or behind a word
+    /// another one that is no field's name.
     fn goes_on(&self, next: &Self) -> bool {
         let has_value = matches!(self.tokens.as_slice(), [TokenTree::Ident(_), colon, _, ..] if is_punct(colon, ':'));
         has_value

@@ -243,10 +243,14 @@ impl StepTime {
         self.is_named && self.most_cycles() > self.cycles_of_period()
     }
 
+    /// Whether a step may take longer than the control period in C.
+    pub fn is_too_long_in_c(&self) -> bool {
+        self.most_cycles_in_c() > self.cycles_of_period()
+    }
+
     /// Whether a step may take longer than the control period in C only.
     pub fn is_too_long_in_c_only(&self) -> bool {
-        let period = self.cycles_of_period();
-        self.most_cycles() <= period && self.most_cycles_in_c() > period
+        self.most_cycles() <= self.cycles_of_period() && self.is_too_long_in_c()
     }
 
     /// Whether the figures are bounds: counted, and at no higher clock than the chip's, beyond which

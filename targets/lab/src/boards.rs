@@ -66,10 +66,7 @@ pub fn board_with_motors(given: &str) -> Result<BoardWithMotors, LabError> {
     let board = motors.first().and_then(|motor| motor.ast.board.as_ref());
     let file = board.and_then(|board| board.file.clone());
     let file = file.unwrap_or_default();
-    let source_of = |name: &str| {
-        let mut sources = file.source.iter();
-        Some(sources.find(|(key, _)| key == name)?.1.clone())
-    };
+    let source_of = |name: &str| file.source_of(name).map(str::to_owned);
     let fields = file
         .inverter
         .fields
@@ -81,12 +78,14 @@ pub fn board_with_motors(given: &str) -> Result<BoardWithMotors, LabError> {
             source: (field.assumed.clone())
                 .map(|why| format!("assumed: {why}"))
                 .or_else(|| source_of(&field.name)),
-        });
+        })
+        .collect();
+    let source = source_of("text");
     Ok(BoardWithMotors {
         name: given.to_owned(),
         description: file.description,
-        source: source_of("text"),
-        fields: fields.collect(),
+        source,
+        fields,
         motors: motors.iter().map(fit).collect(),
     })
 }

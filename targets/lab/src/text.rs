@@ -42,8 +42,8 @@ pub fn quantity(value: f64, unit: &str) -> String {
 /// A demand over what the drive allows from which on it is told as beyond.
 pub const BEYOND: f64 = 1.001;
 
-/// A torque that is demanded and, where the set-point's limit allows less, that: `5 Nm, limited to 3.6 Nm,`. Both in
-/// newton metres; `shown`: how a torque is printed.
+/// A demanded torque with the limit of the set-point where that is lower: `5 Nm, limited to 3.6 Nm,`. Both in newton
+/// metres; `shown`: how a torque is printed.
 pub fn demanded(torque: f64, reach: f64, shown: impl Fn(f64) -> String) -> String {
     if torque.abs() > reach * BEYOND {
         format!(

@@ -70,8 +70,7 @@ pub fn sentence(times: &[StepTime]) -> String {
 
 /// What is told of a step that may take longer than the control period in C, on the core of [`sentence`].
 pub fn longer_in_c(times: &[StepTime]) -> Option<String> {
-    let is_longer = |time: &&StepTime| time.most_cycles_in_c() > time.cycles_of_period();
-    let time = times.first().filter(is_longer)?;
+    let time = times.first().filter(|time| time.is_too_long_in_c())?;
     Some(format!(
         "in C the longest step may take up to {} % of the control period (estimated) {} {} at {}: raise `pwm_per_control`",
         time.percent_of_period(time.most_cycles_in_c() as u32),

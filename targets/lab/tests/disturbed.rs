@@ -123,8 +123,7 @@ impl Disturbance {
         Envelope::of(&real).speed(torque).unwrap_or_default()
     }
 
-    /// Least torque and greatest ripple, percent of the demand; what edges that are seen at samples make of it comes on
-    /// top.
+    /// Least torque and greatest ripple, percent of the demand. Edges that are seen at samples add a ripple of their own.
     fn limits(self, spec: &Spec) -> [f64; 2] {
         let fine = degrees_per_period(spec) <= 12.0;
         let of_edges = 100.0 * spec.sampled_ripple().unwrap_or(0.0);
@@ -194,6 +193,18 @@ fn miss(drive: &Prepared, disturbance: Disturbance, speed: u32, signs: [f64; 2])
 /// Directions and modes: motoring and braking, forward and backward.
 const QUADRANTS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
 
+/// The points that are not right, of some speeds in all quadrants.
+fn misses(
+    drive: &Prepared,
+    disturbance: Disturbance,
+    speeds: &[u32],
+) -> impl Iterator<Item = Miss> {
+    speeds.iter().flat_map(move |&speed| {
+        let at = move |signs| miss(drive, disturbance, speed, signs);
+        QUADRANTS.into_iter().filter_map(at)
+    })
+}
+
 #[test]
 #[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn no_disturbance_changes_the_current_or_makes_it_ripple() {
@@ -213,12 +224,9 @@ fn no_disturbance_changes_the_current_or_makes_it_ripple() {
             })
         })
         .collect();
-    let misses = pairs.par_iter().flat_map_iter(|&(drive, disturbance)| {
-        SPEEDS.into_iter().flat_map(move |speed| {
-            let at = move |signs| miss(drive, disturbance, speed, signs);
-            QUADRANTS.into_iter().filter_map(at)
-        })
-    });
+    let misses = pairs
+        .par_iter()
+        .flat_map_iter(|&(drive, disturbance)| misses(drive, disturbance, &SPEEDS));
     let misses: Vec<Miss> = misses.collect();
     let is_known = |miss: &Miss| {
         MISSED.iter().any(|(motor, disturbance, torque, ripple)| {
@@ -237,7 +245,7 @@ fn no_disturbance_changes_the_current_or_makes_it_ripple() {
     }
 }
 
-/// The same with Hall edges that are seen at samples, on motors of which no warning tells that they ripple by that.
+/// The same with Hall edges seen at samples only, on the motors for which no warning (HX0620) tells of their ripple.
 #[test]
 #[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn an_observer_of_sampled_edges_bears_the_same_disturbances() {
@@ -260,12 +268,7 @@ fn an_observer_of_sampled_edges_bears_the_same_disturbances() {
         let others = DISTURBANCES
             .into_iter()
             .filter(|what| *what != StatedDeadTime);
-        others.flat_map(move |disturbance| {
-            SPEEDS.into_iter().flat_map(move |speed| {
-                let at = move |signs| miss(drive, disturbance, speed, signs);
-                QUADRANTS.into_iter().filter_map(at)
-            })
-        })
+        others.flat_map(move |disturbance| misses(drive, disturbance, &SPEEDS))
     });
     let found: Vec<String> = found.map(|miss| miss.text).collect();
     assert!(found.is_empty(), "{found:#?}");
@@ -279,10 +282,7 @@ fn a_wrong_constant_leaves_no_harmonics_of_a_trapezoid() {
         for variant in VARIANTS {
             let drive = &drive(motor, variant, false);
             for disturbance in [Emf(0.8), Emf(1.2), Bus(0.85)] {
-                let misses = [60, 100].into_iter().flat_map(|speed| {
-                    let at = move |signs| miss(drive, disturbance, speed, signs);
-                    QUADRANTS.into_iter().filter_map(at)
-                });
+                let misses = misses(drive, disturbance, &[60, 100]);
                 let misses: Vec<String> = misses.map(|miss| miss.text).collect();
                 assert!(misses.is_empty(), "{variant}: {misses:#?}");
             }

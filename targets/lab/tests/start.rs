@@ -150,7 +150,7 @@ impl Case {
 
     /// The greatest speed of the drive, rpm.
     fn top(&self) -> f64 {
-        self.drive.spec.inverter.maximum_speed * 60.0 / TAU
+        self.drive.maximum_rpm()
     }
 
     /// Whether control that begins at this speed, in either direction, trips from some angle.

@@ -226,7 +226,7 @@ pub fn missing_alternative(at: &Location, section: &str, fields: &[(&str, String
     )
 }
 
-/// None of the `fields` that state the EMF is given, and a no-load speed at a voltage says its `constant`, rad/s per volt.
+/// None of the `fields` that state the EMF is given. `constant`: the stated no-load speed over its voltage, rad/s per volt.
 pub fn missing_emf_beside_no_load_speed(
     at: &Location,
     fields: &[&str],

@@ -261,8 +261,7 @@ fn core_of_board(board: &LibraryBoard) -> Option<[String; 3]> {
     const TARGET: &str = "target";
     let file = parse_board(board.text, board.name).ok()?;
     let core = file.core.field(TARGET)?.value.to_string();
-    let (_, source) = file.source.iter().find(|(key, _)| key == TARGET)?;
-    let chip = source.split(',').next()?;
+    let chip = file.source_of(TARGET)?.split(',').next()?;
     Some([board.name.to_owned(), core, chip.to_owned()])
 }
 
@@ -328,7 +327,8 @@ pub(super) fn remedy(meant: &str, field: &Field) -> String {
 /// Bits of what an encoder counts in a turn, a clause.
 fn remedy_of_encoder(field: &Field) -> String {
     const FIELD: &str = "angle_bits";
-    let is_lines = LINES.contains(&field.name.to_lowercase().as_str());
+    let name = field.name.to_lowercase();
+    let is_lines = LINES.contains(&&*name);
     let factor = if is_lines { 4 } else { 1 };
     let counts = match &field.value {
         Value::Number(number) => number.digits.parse::<u32>().ok(),
@@ -343,7 +343,7 @@ fn remedy_of_encoder(field: &Field) -> String {
     };
     let of_lines = if is_lines {
         ", four of each line"
-    } else if CYCLES.contains(&field.name.to_lowercase().as_str()) {
+    } else if CYCLES.contains(&&*name) {
         " (two bits more where the sheet counts lines by it)"
     } else {
         ""

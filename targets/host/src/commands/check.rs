@@ -5,6 +5,7 @@
 
 mod text;
 
+use super::cut::beyond_followed;
 use crate::cli::{
     DriveArguments, Failure, note, parse_rpm, print_json, print_verdict, tell_warnings,
     verdict_lines,
@@ -13,7 +14,6 @@ use clap::Args;
 use hexagen_codegen::timing::long_products;
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::judgement::Judgement;
-use std::f64::consts::TAU;
 
 /// Options of `check`.
 #[derive(Args, Clone, Debug)]
@@ -76,23 +76,20 @@ const LEAST_SPEED: f64 = 0.01;
 
 /// Checks that the drive follows the rotor at a speed.
 fn check_speed(drive: &Prepared, rpm: f64) -> Result<(), Failure> {
-    let of = |omega_m: f64| omega_m * 60.0 / TAU;
-    let most = of(drive.spec.inverter.maximum_speed);
-    let least = of(drive.spec.inverter.minimum_speed).max(LEAST_SPEED * drive.rated_rpm());
-    let text = if rpm.abs() > most * (1.0 + 1e-9) {
-        format!(
-            "beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor; give at most {} rpm",
-            most.floor()
-        )
-    } else if rpm.abs() < least * (1.0 - 1e-9) {
-        format!(
-            "slower than this command runs a drive; give at least {} rpm, or take `hexagen simulate`",
-            least.ceil()
-        )
-    } else {
-        return Ok(());
-    };
-    Err(Failure::Argument(format!("--rpm {rpm}: {text}")))
+    if let Some(text) = beyond_followed(drive, rpm) {
+        let most = drive.maximum_rpm().floor();
+        return Err(Failure::Argument(format!(
+            "{text}; give at most {most} rpm"
+        )));
+    }
+    let least = drive.minimum_rpm().max(LEAST_SPEED * drive.rated_rpm());
+    if rpm.abs() < least * (1.0 - 1e-9) {
+        let least = least.ceil();
+        return Err(Failure::Argument(format!(
+            "--rpm {rpm}: slower than this command runs a drive; give at least {least} rpm, or take `hexagen simulate`"
+        )));
+    }
+    Ok(())
 }
 
 /// Cycles that a long product takes more on a Cortex-M3 than on a Cortex-M4, at most.

@@ -1,6 +1,6 @@
 //! `hexagen simulate`: one controller on the simulated motor.
 
-use super::cut::{beyond_limit, cut_by, least_held};
+use super::cut::{beyond_followed, beyond_limit, cut_by, least_held};
 use super::ran::Ran;
 use crate::cli::{
     self, Failure, PlantArguments, RunArguments, note, paragraph, parse_rpm, parse_speed,
@@ -68,7 +68,7 @@ impl Options {
 
     /// Speed to which the tolerance of a settled one refers where the set-point is slower, rpm.
     fn least_rpm(&self, drive: &Prepared) -> f64 {
-        let least = drive.spec.inverter.minimum_speed * 60.0 / TAU;
+        let least = drive.minimum_rpm();
         least.max(self.start_rpm().abs())
     }
 }
@@ -149,7 +149,7 @@ fn aim(
                 .to_owned(),
         ));
     };
-    let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
+    let most = drive.maximum_rpm();
     if rpm.abs() > most {
         warn(&format!(
             "--speed-set {rpm}: the drive limits its speed to maximum_speed = {most:.0} rpm"
@@ -399,13 +399,11 @@ fn beyond_drive(
         return None;
     }
     let rpm = options.start_rpm();
-    let most = drive.spec.inverter.maximum_speed * 60.0 / TAU;
-    if rpm.abs() > most * (1.0 + 1e-9) {
-        return Some(format!(
-            "--rpm {rpm}: beyond maximum_speed = {most:.0} rpm, up to which the drive follows the rotor"
-        ));
+    let beyond = beyond_followed(drive, rpm);
+    if beyond.is_some() {
+        return beyond;
     }
-    let least = drive.spec.inverter.minimum_speed * 60.0 / TAU;
+    let least = drive.minimum_rpm();
     let has_halls = !matches!(drive.spec.inverter.rotor_sensing, RotorSensing::Angle(_));
     if has_halls && rpm != 0.0 && rpm.abs() < least {
         return Some(format!(

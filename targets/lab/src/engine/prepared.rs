@@ -122,6 +122,11 @@ pub fn prepare_ast(
     })
 }
 
+/// A mechanical speed of rad/s in rpm.
+fn rpm(omega_m: f64) -> f64 {
+    omega_m * 30.0 / std::f64::consts::PI
+}
+
 /// The speed that a file lets its rotor reach, where it states one.
 fn highest_speed(ast: &SpecAst, spec: &Spec) -> Option<(&'static str, f64)> {
     let over = spec.inverter.over_speed;
@@ -145,8 +150,8 @@ fn limits_of_others(ast: &SpecAst, spec: &Spec) -> Vec<&'static str> {
 fn core_of_board(ast: &SpecAst) -> Option<String> {
     let names_core = ast.controller.field(TARGET).is_some();
     let file = ast.board.as_ref()?.file.as_ref()?;
-    let (_, told) = file.source.iter().find(|(name, _)| name == TARGET)?;
-    (!names_core).then(|| told.clone())
+    let told = file.source_of(TARGET)?;
+    (!names_core).then(|| told.to_owned())
 }
 
 fn models(
@@ -337,7 +342,17 @@ impl Prepared {
 
     /// Rated speed in rpm.
     pub fn rated_rpm(&self) -> f64 {
-        self.spec.motor.rated_speed * 30.0 / std::f64::consts::PI
+        rpm(self.spec.motor.rated_speed)
+    }
+
+    /// Greatest speed that the drive follows, rpm.
+    pub fn maximum_rpm(&self) -> f64 {
+        rpm(self.spec.inverter.maximum_speed)
+    }
+
+    /// Least speed that Hall edges tell, rpm.
+    pub fn minimum_rpm(&self) -> f64 {
+        rpm(self.spec.inverter.minimum_speed)
     }
 
     /// The compiled drive, if this one is built in.

@@ -81,7 +81,7 @@ impl CurrentLoop for Exact {
     }
 }
 
-/// This ripple, percent of the mean, at a speed in percent of the rated one.
+/// The ripple of exact control, peak to peak in percent of the mean, at a speed in percent of the rated one.
 pub fn least_ripple(drive: &Prepared, speed_pct: u32) -> Option<f64> {
     let plant = plant_of(&drive.spec);
     let omega = f64::from(speed_pct) / 100.0 * drive.spec.motor.rated_speed;

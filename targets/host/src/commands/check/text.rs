@@ -54,10 +54,10 @@ fn of_defaults(judgement: &Judgement) -> Vec<String> {
     lines.collect()
 }
 
-/// Deviation of a stated rated torque from that of the rated current which is told.
+/// Distance of a stated rated torque from that of the rated current, over it, from which on a note says so.
 const APART: f64 = 0.02;
 
-/// What is told of a stated rated torque that the rated current does not make as any current, with what it makes.
+/// The note on a stated rated torque that the rated current makes neither as a block nor as a sine.
 pub(super) fn stated_torque(motor: &MotorSpec) -> Option<String> {
     let stated = motor.rated_torque?;
     let block = motor.emf_constant * motor.emf_shape.quasi_square_factor();
