@@ -77,8 +77,7 @@ impl EmfShape {
 
     /// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
     pub fn squared_length(self, theta_e: f64) -> f64 {
-        let squares = self.zero_sum(theta_e).map(|value| value * value);
-        squares.iter().sum::<f64>() * 2.0 / 3.0
+        squared(self.zero_sum(theta_e))
     }
 
     /// The shape that a rotor shows which turns backward, phases b and c exchanged.
@@ -257,16 +256,24 @@ impl EmfShape {
     /// Greatest phase current of the reference parallel to the EMF, per ampere of set-point:
     /// 1 for a sine, 1.077 for a flat top of 120 degrees (between two corners).
     pub fn proportional_peak(self) -> f64 {
-        const STEPS: u32 = 7200;
-        let factor = self.proportional_factor();
-        (0..STEPS)
+        // Steps of a twentieth of a degree over a sixth of a turn, in which the three phases show all of a half wave.
+        const STEPS: u32 = 1200;
+        let greatest = (0..STEPS)
             .map(|step| {
-                let theta_e = TAU * f64::from(step) / f64::from(STEPS);
-                let [of_a, ..] = self.zero_sum(theta_e);
-                2.0 / 3.0 * factor * of_a.abs() / self.squared_length(theta_e)
+                let theta_e = TAU / 6.0 * f64::from(step) / f64::from(STEPS);
+                let phases = self.zero_sum(theta_e);
+                let most = phases.into_iter().map(f64::abs).fold(0.0, f64::max);
+                most / squared(phases)
             })
-            .fold(0.0, f64::max)
+            .fold(0.0, f64::max);
+        2.0 / 3.0 * self.proportional_factor() * greatest
     }
+}
+
+/// f_alpha^2 + f_beta^2 of three phases without a mean.
+fn squared(phases: [f64; 3]) -> f64 {
+    let squares = phases.map(|value| value * value);
+    squares.iter().sum::<f64>() * 2.0 / 3.0
 }
 
 /// Integral over the angle of the part of phase a's unit EMF that drives current, zero mean, radians.
@@ -289,8 +296,8 @@ pub fn proportional_current(shape: EmfShape, ratio: f64, theta: f64) -> f64 {
 
 /// The same for the three phases.
 pub fn proportional_currents(shape: EmfShape, ratio: f64, theta: f64) -> [f64; 3] {
-    let length = shape.squared_length(theta);
     let phases = shape.zero_sum(theta);
+    let length = squared(phases);
     phases.map(|value| 2.0 / 3.0 * ratio * value / length)
 }
 
