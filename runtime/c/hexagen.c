@@ -555,6 +555,29 @@ void hexagen_start_port(hexagen_port *port)
     port->turn = 0;
 }
 
+hexagen_legs hexagen_legs_of(hexagen_intervals intervals)
+{
+    hexagen_legs legs = hexagen_all_legs(HEXAGEN_LEG_OFF);
+    const uint16_t first = intervals.end[0];
+    const uint16_t second =
+        (intervals.end[1] > first) ? (uint16_t)(intervals.end[1] - first) : (uint16_t)0;
+    const uint16_t lengths[3] = { first, second, 0 };
+    uint16_t leg;
+    uint16_t interval;
+    for (leg = 0; leg < 3; leg++) {
+        for (interval = 0; interval < 3; interval++) {
+            const hexagen_leg state = hexagen_leg_in(intervals, interval, leg);
+            if (state != HEXAGEN_LEG_OFF) {
+                legs.state[leg] = HEXAGEN_LEG_PULSED;
+            }
+            if (state == HEXAGEN_LEG_PULSED) {
+                legs.compare[leg] = (uint16_t)(legs.compare[leg] + lengths[interval]);
+            }
+        }
+    }
+    return legs;
+}
+
 /** Timer counts for which the upper switch of a leg is on; HEXAGEN_NONE if the leg is off. */
 static int32_t on(const hexagen_legs *legs, uint16_t leg)
 {

@@ -146,6 +146,35 @@ static inline hexagen_legs hexagen_all_legs(hexagen_leg state)
     return legs;
 }
 
+/**
+ * Three intervals of one period with a state per leg each, for modulators that turn legs off and on
+ * within a period; the inverter's output enables change by a compare event.
+ *
+ * The first two end at an instant, timer counts from the beginning of the period, the second not
+ * before the first; the third ends with the period. States are those of legs a, b, c in two bits
+ * each, a's lowest, as of hexagen_leg: an index for a table of the timer's output enables. A pulsed
+ * leg has its upper switch on for the whole of an interval. The third is a zero vector.
+ */
+typedef struct {
+    uint16_t end[2];
+    uint16_t states[3];
+} hexagen_intervals;
+
+/** All legs in the same state for the whole period. */
+static inline hexagen_intervals hexagen_all_intervals(hexagen_leg state)
+{
+    const uint16_t states = (uint16_t)((uint32_t)state * 21U);
+    const hexagen_intervals intervals = { { 0, 0 }, { states, states, states } };
+    return intervals;
+}
+
+/** State of a leg, 0 a to 2 c, in an interval, 0 to 2. */
+static inline hexagen_leg hexagen_leg_in(
+    hexagen_intervals intervals, uint16_t interval, uint16_t leg)
+{
+    return hexagen_leg_of((int32_t)(((uint32_t)intervals.states[interval] >> (2U * leg)) & 3U));
+}
+
 /* ---- Status ------------------------------------------------------------------------------ */
 
 /** Operating mode of a drive. */
@@ -1259,6 +1288,9 @@ static inline bool hexagen_is_asked(const hexagen_port *port)
 {
     return port->turn == 1;
 }
+
+/** Legs whose upper switches are on for as long; one that is off throughout is off. */
+HEXAGEN_COLD hexagen_legs hexagen_legs_of(hexagen_intervals intervals);
 
 /** Answers with the words of this period; by value, so that they use memory on this path only. */
 HEXAGEN_COLD void hexagen_answer(hexagen_port *port, hexagen_checked checked, hexagen_legs legs,

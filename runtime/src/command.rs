@@ -34,6 +34,9 @@ pub trait Command: Copy + 'static {
     /// Timer counts for which the upper switches of legs a, b, c are on; `None` for a leg that is
     /// off for the whole period.
     fn on(self) -> [Option<u16>; 3];
+    /// Three instants, timer counts, and the states of the legs in up to three intervals, two bits per
+    /// leg: all that a command holds. Unused ones are 0. For verification.
+    fn words(self) -> [u16; 6];
 }
 
 /// Compare values for a centre-aligned timer and a state per leg.
@@ -63,10 +66,9 @@ impl Legs {
     #[inline]
     #[must_use]
     pub const fn new(compare: [u16; 3], state: [LegState; 3]) -> Self {
-        let ([a, b, c], [state_a, state_b, state_c]) = (compare, state);
-        let states = state_a as u32 | (state_b as u32) << 2 | (state_c as u32) << 4;
+        let [a, b, c] = compare;
         let low = a as u32 | (b as u32) << 16;
-        let high = c as u32 | states << 16;
+        let high = c as u32 | (packed(state) as u32) << 16;
         Self(low as u64 | (high as u64) << 32)
     }
 
@@ -88,12 +90,7 @@ impl Legs {
     #[inline]
     #[must_use]
     pub const fn state(self) -> [LegState; 3] {
-        let states = self.states() as i32;
-        [
-            LegState::from_number(states & 3),
-            LegState::from_number(states >> 2 & 3),
-            LegState::from_number(states >> 4 & 3),
-        ]
+        unpacked(self.states())
     }
 
     /// States of legs a, b, c in two bits each, a's lowest: an index for a table of the timer's
@@ -135,6 +132,12 @@ impl Command for Legs {
         };
         [on(state_a, a), on(state_b, b), on(state_c, c)]
     }
+
+    #[inline]
+    fn words(self) -> [u16; 6] {
+        let [a, b, c] = self.compare();
+        [a, b, c, self.states(), 0, 0]
+    }
 }
 
 impl Default for Legs {
@@ -164,50 +167,57 @@ impl defmt::Format for Legs {
     }
 }
 
-/// Up to three intervals of one period with a state per leg each, for modulators that turn legs off
-/// and on within a period. Inverters need output enables that change by a compare event.
+/// Three intervals of one period with a state per leg each, for modulators that turn legs off and on
+/// within a period. Inverters need output enables that change by a compare event.
 ///
-/// Instants are timer counts from the beginning of the period, in ascending order. A pulsed leg has
-/// its upper switch on for the whole interval.
+/// The first two end at an instant, timer counts from the beginning of the period, the second not
+/// before the first; the third ends with the period. A pulsed leg has its upper switch on for the
+/// whole of an interval. The third is a zero vector: there a pulsed leg counts as low.
 ///
 /// ```
 /// use hexagen::{Command, Intervals, LegState};
 /// use LegState::{Low, Off, Pulsed};
 ///
-/// let two = Intervals::new([900, 1500, 1800], [[Pulsed, Low, Off], [Low; 3], [Pulsed, Off, Off]]);
+/// let two = Intervals::new([900, 1500], [[Pulsed, Low, Off], [Pulsed, Off, Low], [Low; 3]]);
 /// assert_eq!(two.state()[0], [Pulsed, Low, Off]);
-/// assert_eq!(two.on(), [Some(1200), Some(0), Some(0)]);
-/// // A descending instant counts as the one before.
-/// assert_eq!(Intervals::new([900, 100, 0], [[Off; 3]; 3]).ends(), [900; 3]);
+/// assert_eq!(two.on(), [Some(1500), Some(0), Some(0)]);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Intervals {
-    ends: [u16; 3],
-    state: [[LegState; 3]; 3],
+    ends: [u16; 2],
+    states: [u16; 3],
 }
 
 impl Intervals {
     /// All legs off for the whole period: the safe command of a tripped drive.
-    pub const OFF: Self = Self::new([0, 0, u16::MAX], [[LegState::Off; 3]; 3]);
+    pub const OFF: Self = Self::all(LegState::Off);
 
-    /// Ends of the intervals (the third at or after the end of the period), and states of legs a,
-    /// b, c in each.
+    /// Ends of the first two intervals, and states of legs a, b, c in each of the three.
     #[inline]
     #[must_use]
-    pub const fn new([first, second, third]: [u16; 3], state: [[LegState; 3]; 3]) -> Self {
-        let second = if second < first { first } else { second };
-        let third = if third < second { second } else { third };
-        Self {
-            ends: [first, second, third],
-            state,
-        }
+    pub const fn new(ends: [u16; 2], [first, second, third]: [[LegState; 3]; 3]) -> Self {
+        let states = [packed(first), packed(second), packed(third)];
+        Self::of_states(ends, states)
     }
 
-    /// Ends of the intervals, timer counts from the beginning of the period.
+    /// Ends of the first two intervals, and [`states`](Self::states).
     #[inline]
     #[must_use]
-    pub const fn ends(self) -> [u16; 3] {
+    pub const fn of_states(ends: [u16; 2], states: [u16; 3]) -> Self {
+        Self { ends, states }
+    }
+
+    /// All legs in the same state for the whole period.
+    #[inline]
+    #[must_use]
+    pub const fn all(state: LegState) -> Self {
+        Self::new([0; 2], [[state; 3]; 3])
+    }
+
+    /// Ends of the first two intervals, timer counts from the beginning of the period.
+    #[inline]
+    #[must_use]
+    pub const fn ends(self) -> [u16; 2] {
         self.ends
     }
 
@@ -215,34 +225,86 @@ impl Intervals {
     #[inline]
     #[must_use]
     pub const fn state(self) -> [[LegState; 3]; 3] {
-        self.state
+        let [first, second, third] = self.states;
+        [unpacked(first), unpacked(second), unpacked(third)]
+    }
+
+    /// States of legs a, b, c in two bits each, a's lowest, in each interval: indices for a table of
+    /// the timer's output enables.
+    #[inline]
+    #[must_use]
+    pub const fn states(self) -> [u16; 3] {
+        self.states
     }
 }
 
 impl Command for Intervals {
     #[inline]
     fn at_rest(state: LegState) -> Self {
-        Self::new([0, 0, u16::MAX], [[state; 3]; 3])
+        Self::all(state)
     }
 
     fn on(self) -> [Option<u16>; 3] {
-        let [first, second, third] = self.ends;
-        let lengths = [
-            first,
-            second.wrapping_sub(first),
-            third.wrapping_sub(second),
-        ];
-        let [one, two, three] = self.state;
-        let on = |[one, two, three]: [LegState; 3]| {
-            let states = [one, two, three];
-            let is_off = states.iter().all(|&state| state == LegState::Off);
-            let pulsed = states.iter().zip(lengths);
-            let pulsed = pulsed.filter(|(state, _)| **state == LegState::Pulsed);
-            // The sum is at most the third instant.
-            let sum = pulsed.fold(0_u16, |sum, (_, length)| sum.wrapping_add(length));
-            (!is_off).then_some(sum)
+        let [first, second] = self.ends;
+        let lengths = [first, second.saturating_sub(first)];
+        let [one, two, three] = self.state();
+        let on = |one: LegState, two: LegState, three: LegState| {
+            let of = |state: LegState, length: u16| {
+                if state == LegState::Pulsed { length } else { 0 }
+            };
+            let is_off = one == LegState::Off && two == LegState::Off && three == LegState::Off;
+            // The sum is at most the second instant.
+            (!is_off).then_some(of(one, lengths[0]).wrapping_add(of(two, lengths[1])))
         };
         let ([a1, b1, c1], [a2, b2, c2], [a3, b3, c3]) = (one, two, three);
-        [on([a1, a2, a3]), on([b1, b2, b3]), on([c1, c2, c3])]
+        [on(a1, a2, a3), on(b1, b2, b3), on(c1, c2, c3)]
     }
+
+    #[inline]
+    fn words(self) -> [u16; 6] {
+        let ([first, second], [one, two, three]) = (self.ends, self.states);
+        [first, second, 0, one, two, three]
+    }
+}
+
+impl core::fmt::Debug for Intervals {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let [first, second, third] = self.states;
+        f.debug_struct("Intervals")
+            .field("ends", &self.ends)
+            .field(
+                "state",
+                &[unpacked(first), unpacked(second), unpacked(third)],
+            )
+            .finish()
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Intervals {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(
+            f,
+            "Intervals {{ ends: {}, state: {} }}",
+            self.ends(),
+            self.state()
+        );
+    }
+}
+
+/// States of legs a, b, c in two bits each, a's lowest.
+#[inline]
+const fn packed([a, b, c]: [LegState; 3]) -> u16 {
+    a as u16 | (b as u16) << 2 | (c as u16) << 4
+}
+
+/// The legs' states in a word of [`packed`].
+#[inline]
+const fn unpacked(states: u16) -> [LegState; 3] {
+    let states = states as i32;
+    [
+        LegState::from_number(states & 3),
+        LegState::from_number(states >> 2 & 3),
+        LegState::from_number(states >> 4 & 3),
+    ]
 }

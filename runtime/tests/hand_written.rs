@@ -112,7 +112,7 @@ impl Control for SixStep {
         let mut freewheeling = [Off; 3];
         (freewheeling[high], freewheeling[low]) = (Low, Low);
         let on = set_point.current().to_u16();
-        Intervals::new([on, PERIOD, PERIOD], [driven, freewheeling, freewheeling])
+        Intervals::new([on, PERIOD], [driven, freewheeling, freewheeling])
     }
 }
 
@@ -145,7 +145,7 @@ fn a_hand_written_law_runs_in_a_drive() {
     // The first code after a rest is a new one.
     assert_eq!(control.step(&sample(HALL)), Intervals::OFF);
     let command = control.step(&sample(HALL));
-    assert_eq!(command.ends(), [450, PERIOD, PERIOD]);
+    assert_eq!(command.ends(), [450, PERIOD]);
     assert_eq!(command.on(), [Some(450), Some(0), None]);
     assert_eq!(
         control.step(&Sample::with_hall([2048, 4000], HALL)),

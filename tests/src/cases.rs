@@ -3,11 +3,11 @@
 
 use crate::set::Set;
 use crate::states::States;
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Sample};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::formats;
 use hexagen_reference::verify::Subject;
-use hexagen_reference::{BitTrue, Bus, FormatTable, Spec};
+use hexagen_reference::{AnyCommand, BitTrue, Bus, FormatTable, Spec};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -30,7 +30,7 @@ pub struct Case {
 /// Result of a step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Answer {
-    legs: Legs,
+    command: AnyCommand,
     fault: Option<Fault>,
     words: Vec<i32>,
 }
@@ -100,7 +100,7 @@ pub fn record(generated: &Generated, steps: u64, seed: u64) -> Result<Record, St
         };
         for answer in &mut case.answers {
             *answer = Answer {
-                legs: model.step(&sample),
+                command: model.step(&sample),
                 fault: model.fault(),
                 words: vec![0; names.len()],
             };
@@ -136,7 +136,7 @@ pub fn replay<S: Subject>(record: &Record, names: &[&str], mut subject: S) -> Re
         case.set.apply(&mut subject);
         let mut sample = case.sample;
         for answer in &case.answers {
-            found.legs = subject.step(&sample);
+            found.command = subject.step(&sample);
             found.fault = subject.fault();
             subject.state_words(&mut found.words);
             if found != *answer {
@@ -158,7 +158,7 @@ fn difference(
 ) -> String {
     let mut text = format!(
         "state {number}, {sample:?}\n  {:?} {:?}\n  {:?} {:?} (model)\n",
-        found.legs, found.fault, expected.legs, expected.fault
+        found.command, found.fault, expected.command, expected.fault
     );
     for (index, name) in names.iter().enumerate() {
         let (from, is, should) = (case.words[index], found.words[index], expected.words[index]);

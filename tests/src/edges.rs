@@ -2,7 +2,7 @@
 //! than a smooth function's would. Errors of rounding, comparisons and limits appear there, and
 //! hardly anywhere else.
 
-use hexagen::{LegState, Sample};
+use hexagen::Sample;
 use hexagen_reference::{BitTrue, Reach, Trace};
 
 /// The observed part of a step's result.
@@ -31,9 +31,9 @@ impl Watched {
     /// The result of the step from a state.
     pub fn measure(self, model: &mut BitTrue, words: &[i32], sample: &Sample) -> Vec<i32> {
         model.set_state_words(words);
-        let legs = model.step(sample);
+        let command = model.step(sample);
         match self {
-            Self::Compare(phase) => vec![legs.compare()[phase].into()],
+            Self::Compare(phase) => vec![command.instants()[phase].into()],
             Self::Reach => vec![(model.course().reach != Reach::Inside).into()],
             Self::Torque => {
                 let trace = model.trace();
@@ -50,9 +50,14 @@ impl Watched {
             Self::All => {
                 let mut result = vec![0; words.len()];
                 model.state_words(&mut result);
-                result.extend(legs.compare().map(i32::from));
+                result.extend(command.instants().map(i32::from));
                 // A leg that changes its state jumps by a bus voltage.
-                result.extend(legs.state().map(|state: LegState| (state as i32) << 24));
+                let legs = [0, 2, 4].map(|bit| command.states().map(|states| states >> bit & 3));
+                result.extend(
+                    legs.into_iter()
+                        .flatten()
+                        .map(|state| i32::from(state) << 24),
+                );
                 result
             }
         }

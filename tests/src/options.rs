@@ -73,7 +73,28 @@ const RETURNED: &str = "\"returned\"";
 const OVER_SPEED: &str = "\"over-speed\"";
 
 /// Values rejected by every drive of a kind: kind, option, value.
-const REFUSED: [(&str, &str, &str); 2] = [("p-pwm", "emf", "held"), ("pi-pwm", "emf", "held")];
+const REFUSED: [(&str, &str, &str); 3] = [
+    ("p-pwm", "emf", "held"),
+    ("pi-pwm", "emf", "held"),
+    ("pi-pwm", "modulation", "pair"),
+];
+
+/// Values of independent options that the second option's value rules out: intervals have no pulses to shift, and the bus
+/// current of them is not computed.
+const APART: [[(&str, &str); 2]; 6] = [
+    [("dead_time", "compensated"), ("modulation", "table2")],
+    [
+        ("dead_time", "compensated"),
+        ("modulation", "table2_pair_low"),
+    ],
+    [("supply", "limited"), ("modulation", "table2")],
+    [("supply", "limited"), ("modulation", "table2_pair_low")],
+    [("supply", "limited_both_ways"), ("modulation", "table2")],
+    [
+        ("supply", "limited_both_ways"),
+        ("modulation", "table2_pair_low"),
+    ],
+];
 
 /// A switching table that no derivation gives, with every vector.
 const SWITCHING_TABLE: &str = "[0, 3, 5, 12, 9, 15, 2, 6, 13, 8, 11, 1, 14, 7, 4, 10, \
@@ -100,6 +121,21 @@ const OWN: &[Row] = &[
                 ],
             ),
             ("two_steps", &[("controller", "horizon", "2")]),
+        ],
+    ),
+    (
+        "modulation",
+        &[
+            ("three_phase", &[]),
+            ("pair", &[("controller", "modulation", "\"pair\"")]),
+            ("table2", &[("controller", "modulation", "\"table2\"")]),
+            (
+                "table2_pair_low",
+                &[
+                    ("controller", "modulation", "\"table2\""),
+                    ("controller", "zero", "\"pair_low\""),
+                ],
+            ),
         ],
     ),
     (
@@ -631,10 +667,15 @@ impl Kind {
         let axes = self.axes.iter().enumerate();
         let loose = axes.clone().skip(self.bound().len()).flat_map(values);
         let bound = axes.take(self.bound().len());
-        loose.flat_map(move |of| {
+        let meetings = loose.flat_map(move |of| {
             let others = bound.clone().flat_map(values);
             others.map(move |value| (of, value))
-        })
+        });
+        let name = |(axis, value): (usize, usize)| {
+            let axis = &self.axes[axis];
+            (axis.name, axis.values[value].name)
+        };
+        meetings.filter(move |&(of, other)| !APART.contains(&[name(of), name(other)]))
     }
 
     /// The choice with the first value of every axis except the named ones: `[("emf", "model")]`.

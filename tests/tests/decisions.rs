@@ -5,14 +5,14 @@
 //! Costs are those of the ideal model from the same state, enumerated here. The environment's
 //! `HEXAGEN_DECISIONS` is the number of steps of all drives together.
 
-use hexagen::{Legs, Sample, Supervisor};
+use hexagen::{Sample, Supervisor};
 use hexagen_codegen::ir::stated_errors;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{apply_variant, check, parse_toml};
 use hexagen_lab::formats;
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{
-    BitTrue, Candidates, Controller, DiscretePhase, FormatTable, Ideal, Mode, OffLeg,
+    AnyCommand, BitTrue, Candidates, Controller, DiscretePhase, FormatTable, Ideal, Mode, OffLeg,
     PhysicalState, Spec, Trace,
 };
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
@@ -325,29 +325,29 @@ impl Subject {
         all.into_iter().rev().find(other)
     }
 
-    /// One step of both models from the state of the bit-true one: its legs, and its vector in
+    /// One step of both models from the state of the bit-true one: its command, and its vector in
     /// control.
     fn compare(
         &self,
         models: &mut (BitTrue, Ideal),
         sample: Sample,
         tally: &mut Tally,
-    ) -> (Legs, Option<usize>) {
+    ) -> (AnyCommand, Option<usize>) {
         let (bit_true, ideal) = models;
         let set_point = bit_true.set_point_amps();
         ideal.set_current_amps(set_point);
         let before = bit_true.physical_state();
         ideal.rebuild_from(&before);
-        let legs = bit_true.step(&sample);
+        let command = bit_true.step(&sample);
         ideal.step(&sample);
         let (found, exact) = (bit_true.trace(), *ideal.trace());
         if !found.run {
-            return (legs, None);
+            return (command, None);
         }
         let decided_alike = exact.run && found.commutating == exact.commutating;
         if !decided_alike || self.is_at_threshold(&before, exact.i) {
             tally.left_out += 1;
-            return (legs, Some(found.vector));
+            return (command, Some(found.vector));
         }
         let excess = self.excess(&before, &exact, set_point, found.vector);
         assert!(
@@ -363,7 +363,7 @@ impl Subject {
         let wrong = self.neither_of(found.vector, &exact);
         let is_refuted = |wrong| self.excess(&before, &exact, set_point, wrong) > 1.0;
         tally.refuted += u64::from(wrong.is_some_and(is_refuted));
-        (legs, Some(found.vector))
+        (command, Some(found.vector))
     }
 
     /// Searches the edge between two values of a word of state with different vectors; compares at
@@ -433,8 +433,8 @@ impl Subject {
                 let word = movers[(taken / STRIDE) as usize % movers.len()];
                 self.seek_edge(&mut scratch, (&words, word), sample, &mut tally);
             }
-            let (legs, _) = self.compare(&mut models, sample, &mut tally);
-            stimulus.respond(legs);
+            let (command, _) = self.compare(&mut models, sample, &mut tally);
+            stimulus.respond(command);
         }
         tally
     }

@@ -41,13 +41,31 @@ const WITHOUT_EFFECT: &[&str] = &[
     "p-pwm reference=weakened advance=1.5",
     "p-pwm reference=weakened advance=2",
     "p-pwm emf=torque v_bus=fixed",
-    "pdcc modulation=pair common_mode=centred",
-    "pdcc modulation=pair common_mode=readable",
-    "pdcc modulation=pair common_mode=clamped_low",
+    "pdcc common_mode=centred modulation=pair",
+    "pdcc common_mode=centred modulation=table2",
+    "pdcc common_mode=centred modulation=table2_pair_low",
+    "pdcc common_mode=readable modulation=pair",
+    "pdcc common_mode=readable modulation=table2",
+    "pdcc common_mode=readable modulation=table2_pair_low",
+    "pdcc common_mode=clamped_low modulation=pair",
+    "pdcc common_mode=clamped_low modulation=table2",
+    "pdcc common_mode=clamped_low modulation=table2_pair_low",
     "pdcc modulation=pair reference=proportional",
     "pdcc modulation=pair reference=weakened",
+    "pdcc modulation=table2 reference=proportional",
+    "pdcc modulation=table2 reference=weakened",
+    "pdcc modulation=table2_pair_low reference=proportional",
+    "pdcc modulation=table2_pair_low reference=weakened",
     "pdcc modulation=pair emf=held",
     "pdcc modulation=pair legs=sensed",
+    "pdcc modulation=table2 legs=sensed",
+    "pdcc modulation=table2_pair_low legs=sensed",
+    "pdcc modulation=table2 dead_time=compensated",
+    "pdcc modulation=table2_pair_low dead_time=compensated",
+    "pdcc modulation=table2 supply=limited",
+    "pdcc modulation=table2 supply=limited_both_ways",
+    "pdcc modulation=table2_pair_low supply=limited",
+    "pdcc modulation=table2_pair_low supply=limited_both_ways",
     "pdcc reference=weakened emf=torque",
     "pdcc reference=proportional advance=1.5",
     "pdcc reference=proportional advance=2",
@@ -83,6 +101,8 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pi-pwm six_step=on common_mode=centred",
     "pi-pwm six_step=on common_mode=readable",
     "pi-pwm six_step=on common_mode=clamped_low",
+    "pi-pwm six_step=on modulation=table2",
+    "pi-pwm six_step=on modulation=table2_pair_low",
     "pi-pwm six_step=on reference=proportional",
     "pi-pwm six_step=on reference=weakened",
     "pi-pwm six_step=on emf=estimated",
@@ -93,6 +113,26 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pi-pwm six_step=on emf=learning",
     "pi-pwm six_step=on emf=torque",
     "pi-pwm six_step=on legs=sensed",
+    "pi-pwm common_mode=centred modulation=table2",
+    "pi-pwm common_mode=centred modulation=table2_pair_low",
+    "pi-pwm common_mode=readable modulation=table2",
+    "pi-pwm common_mode=readable modulation=table2_pair_low",
+    "pi-pwm common_mode=clamped_low modulation=table2",
+    "pi-pwm common_mode=clamped_low modulation=table2_pair_low",
+    "pi-pwm modulation=table2 reference=proportional",
+    "pi-pwm modulation=table2 reference=weakened",
+    "pi-pwm modulation=table2_pair_low reference=proportional",
+    "pi-pwm modulation=table2_pair_low reference=weakened",
+    "pi-pwm modulation=table2 emf=torque",
+    "pi-pwm modulation=table2_pair_low emf=torque",
+    "pi-pwm modulation=table2 legs=sensed",
+    "pi-pwm modulation=table2_pair_low legs=sensed",
+    "pi-pwm modulation=table2 dead_time=compensated",
+    "pi-pwm modulation=table2_pair_low dead_time=compensated",
+    "pi-pwm modulation=table2 supply=limited",
+    "pi-pwm modulation=table2 supply=limited_both_ways",
+    "pi-pwm modulation=table2_pair_low supply=limited",
+    "pi-pwm modulation=table2_pair_low supply=limited_both_ways",
     "pi-pwm reference=weakened emf=torque",
     "pi-pwm reference=proportional advance=1.5",
     "pi-pwm reference=proportional advance=2",
@@ -223,15 +263,23 @@ fn every_pair_of_option_values_is_compiled() {
     assert_eq!(refused, WITHOUT_EFFECT);
     // Two legs cannot drive three currents, and an off leg cannot be read; all other rejections are for lack of
     // effect.
-    let three_currents = [
-        "pdcc modulation=pair reference=proportional",
-        "pdcc modulation=pair reference=weakened",
-    ];
+    let three_currents = |what: &str| {
+        let turns_off = ["=pair", "=table2", "=table2_pair_low"];
+        let has_reference = ["reference=proportional", "reference=weakened"];
+        turns_off
+            .iter()
+            .any(|value| what.contains(&format!("modulation{value} ")))
+            && has_reference
+                .iter()
+                .any(|reference| what.ends_with(reference))
+    };
     for (what, codes) in refused.iter().zip(codes) {
-        let expected = if three_currents.contains(what) {
+        let expected = if three_currents(what) {
             "HX0111"
         } else if what.ends_with("legs=sensed") && !what.contains("off_leg=nominal") {
             "HX0409"
+        } else if what.contains("table2") && what.contains("supply=limited") {
+            "HX0410"
         } else {
             "HX0404"
         };

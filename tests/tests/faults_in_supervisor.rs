@@ -16,7 +16,7 @@ trait Supervised {
     /// A period.
     fn period(&mut self, adc: [u16; 3], hall: u8, is_demanded: bool) -> Outcome;
     /// Follows the legs of a controlled period.
-    fn follow(&mut self, legs: hexagen::Legs);
+    fn follow(&mut self, command: hexagen_reference::AnyCommand);
     /// A period begins behind a call of `set_bus` with this count.
     fn bus(&mut self, counts: u16);
     fn reset(&mut self);
@@ -71,8 +71,9 @@ macro_rules! new {
                     against,
                 }
             }
-            fn follow(&mut self, legs: hexagen::Legs) {
-                self.0.follow_command(&self.2, legs.on());
+            fn follow(&mut self, command: hexagen_reference::AnyCommand) {
+                self.0
+                    .follow_command(&self.2, hexagen::Command::on(command));
             }
             fn bus(&mut self, counts: u16) {
                 if let Some(fault) = self.1.bus_fault(counts) {
@@ -276,7 +277,7 @@ impl Sound {
             if !pair.is_same(&sample) {
                 return true;
             }
-            stimulus.respond(pair.legs);
+            stimulus.respond(pair.command);
         }
         false
     }
@@ -317,7 +318,7 @@ struct Pair {
     words: Vec<i32>,
     /// Indices of the last currents.
     currents: [usize; 2],
-    legs: hexagen::Legs,
+    command: hexagen_reference::AnyCommand,
 }
 
 impl Pair {
@@ -330,7 +331,7 @@ impl Pair {
             words: vec![0; names.len()],
             currents: ["i_a_prev", "i_b_prev"]
                 .map(|name| place(name).expect("a law with currents")),
-            legs: hexagen::Legs::OFF,
+            command: hexagen_reference::AnyCommand::default(),
         }
     }
 
@@ -369,12 +370,12 @@ impl Pair {
         } = self
             .supervisor
             .period(sample.adc(), sample.hall(), is_demanded);
-        self.legs = self.model.step(sample);
+        self.command = self.model.step(sample);
         self.model.state_words(&mut self.words);
         if leg.is_none() {
-            self.supervisor.follow(self.legs);
+            self.supervisor.follow(self.command);
         }
-        let expected = (!self.model.trace().run).then(|| self.legs.state()[0] as i32);
+        let expected = (!self.model.trace().run).then(|| self.command.state()[0] as i32);
         // The model demands the largest torque against the direction, or none.
         let demanded = self.model.set_point_words()[0];
         let is_opposed = against.is_none_or(|direction| match direction {

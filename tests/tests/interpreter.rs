@@ -23,7 +23,12 @@ const SAMPLE: usize = 24;
 const SAMPLE_STEPS: u64 = 2_000;
 
 /// Codes of options that exclude each other, and of boards whose legs exclude an option.
-const RULED_OUT: [&str; 3] = ["DependentField", "OptionWithoutEffect", "UnreadableLeg"];
+const RULED_OUT: [&str; 4] = [
+    "DependentField",
+    "IntervalsUnavailable",
+    "OptionWithoutEffect",
+    "UnreadableLeg",
+];
 
 /// Results of many drives.
 #[derive(Debug, Default)]

@@ -172,12 +172,15 @@ fn the_second_highest_leg_can_always_be_read() {
                 Some(Action::Reset) => model.reset(),
                 _ => {}
             }
-            let legs = model.step(&sample);
-            stimulus.respond(legs);
-            let mut compares = legs.compare();
+            let command = model.step(&sample);
+            stimulus.respond(command);
+            let mut compares = command.instants();
             compares.sort_unstable();
             let [_, second, highest] = compares;
-            assert!(highest <= top && second <= second_top, "{name}: {legs:?}");
+            assert!(
+                highest <= top && second <= second_top,
+                "{name}: {command:?}"
+            );
             largest = largest.max(highest);
         }
         assert_eq!(largest, top, "{name}");

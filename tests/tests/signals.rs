@@ -3,7 +3,7 @@
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Legs, Signals};
 use hexagen_reference::verify::{Action, Context, Stimulus};
-use hexagen_reference::{BitTrue, FormatTable, Mode, Spec};
+use hexagen_reference::{AnyCommand, BitTrue, FormatTable, Mode, Spec};
 use std::f64::consts::TAU;
 
 macro_rules! drives {
@@ -81,9 +81,9 @@ fn told<C: Control<Command = Legs>>() -> Told {
             }
             _ => {}
         }
-        let legs = model.step(&sample);
-        assert_eq!(drive.step(&sample), legs);
-        stimulus.respond(legs);
+        let command = model.step(&sample);
+        assert_eq!(AnyCommand::from(drive.step(&sample)), command);
+        stimulus.respond(command);
         let trace = model.trace();
         let Some(Signals {
             currents,

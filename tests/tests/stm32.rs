@@ -144,7 +144,7 @@ fn differences(mut timer: Timer, commands: &[Legs]) -> Result<usize, String> {
     let of = |legs: Legs, leg: usize| (legs.state()[leg], legs.compare()[leg]);
     let (mut previous, mut command) = (Legs::OFF, Legs::OFF);
     for &next in commands {
-        inverter.begin(command, ARR, (f64::from(PERIOD), 1));
+        inverter.begin(command.into(), ARR, (f64::from(PERIOD), 1));
         for clock in 0..PERIOD {
             if clock == WRITE {
                 timer.write(outputs(next));

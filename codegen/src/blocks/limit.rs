@@ -52,6 +52,23 @@ impl<E> Priority<E> {
     }
 }
 
+impl<E> Priority<E> {
+    /// The same rule in another plane, to which `turn` brings the EMF.
+    pub fn of_plane<'b>(
+        self,
+        turn: impl FnOnce(Phases<'b>) -> Phases<'b>,
+    ) -> Priority<impl FnOnce() -> Phases<'b>>
+    where
+        E: FnOnce() -> Phases<'b>,
+    {
+        match self {
+            Self::Angle => Priority::Angle,
+            Self::Nearest => Priority::Nearest,
+            Self::Torque(emf) => Priority::Torque(move || turn(emf())),
+        }
+    }
+}
+
 /// Fraction bits of the ratio in keep_angle.
 const SCALE_BITS: u32 = 30;
 /// Torque priority needs an EMF of at least V_BUS / 2^5.

@@ -21,6 +21,7 @@ mod slew;
 mod speed;
 mod speed_ramp;
 mod speed_rise;
+mod table2;
 mod torque_learning;
 mod weakening;
 
@@ -37,8 +38,8 @@ pub use hall_learning::HALL_SHIFTS;
 pub use limit::{Hexagon, Limited, Priority};
 pub use measure::{Hall, Sample, find_sector, sample, sector_of, sector_word, third_current};
 pub use modulate::{
-    Applied, Command, LOW, Modulator, OFF, OffLeg, PULSED, across_pair, compare_of, limit_line,
-    pair_signs,
+    Applied, Command, LOW, Modulator, OFF, OffLeg, PULSED, StepCommand, across_pair, compare_of,
+    limit_line, pair_signs,
 };
 use number::round_half_up;
 pub use number::{product_bound, round_down};
@@ -46,6 +47,7 @@ pub use over_speed::{OVER_SPEED_COUNT, OVER_SPEED_EDGES};
 pub use rotor::{Rotor, RotorWords, advanced_sector, direction_word, sense_direction};
 pub use slew::SlewLimit;
 pub use speed::{Regulated, SpeedRegulator};
+pub use table2::{Intervals, Table2};
 pub use torque_learning::{TORQUE_RATIO, TorqueLearning};
 pub use weakening::{FieldWeakening, Weakened};
 

@@ -1,6 +1,6 @@
 //! Modulation: voltages to leg commands, and the voltage really applied (semantics, steps 7, 11).
 
-use super::{Bus, CommonModeRule, Limited, Lowering};
+use super::{Bus, CommonModeRule, Intervals, Limited, Lowering};
 use crate::design::vectors::SECTOR_CURRENT;
 use crate::ir::{
     Coefficient, Expr, Flag, Interval, Memory, Named, Output, Phase, Phases, named, pick,
@@ -21,6 +21,40 @@ pub struct Command<'b> {
     pub compares: Phases<'b, 3>,
     /// Leg states: [`PULSED`], [`LOW`], [`OFF`].
     pub legs: Phases<'b, 3>,
+}
+
+/// The command of a step.
+#[derive(Clone, Copy, Debug)]
+pub enum StepCommand<'b> {
+    /// Pulses in the middle of the period.
+    Pulses(Command<'b>),
+    /// Intervals with legs of their own.
+    Intervals(Intervals<'b>),
+}
+
+impl<'b> From<Command<'b>> for StepCommand<'b> {
+    fn from(command: Command<'b>) -> Self {
+        Self::Pulses(command)
+    }
+}
+
+impl<'b> From<Intervals<'b>> for StepCommand<'b> {
+    fn from(intervals: Intervals<'b>) -> Self {
+        Self::Intervals(intervals)
+    }
+}
+
+impl<'b> StepCommand<'b> {
+    /// Ends the step: outputs the command and sets the state words.
+    pub fn close_step(&self, l: &Lowering<'b>, remembered: &[(Memory<'b>, Expr<'b>)]) {
+        match self {
+            Self::Pulses(command) => command.output(l),
+            Self::Intervals(intervals) => intervals.output(l),
+        }
+        for &(memory, value) in remembered {
+            memory.set(value);
+        }
+    }
 }
 
 /// Terminal voltages of the three legs and the off leg.
@@ -44,16 +78,12 @@ pub struct OffLeg<'b> {
 }
 
 impl<'b> Command<'b> {
-    /// Ends the step: outputs the command and sets the state words.
-    pub fn close_step(&self, l: &Lowering<'b>, remembered: &[(Memory<'b>, Expr<'b>)]) {
+    fn output(&self, l: &Lowering<'b>) {
         for (phase, compare) in Phase::ALL.into_iter().zip(self.compares.0) {
             l.b.output(Output::Compare(phase), compare);
         }
         for (phase, leg) in Phase::ALL.into_iter().zip(self.legs.0) {
             l.b.output(Output::Leg(phase), leg);
-        }
-        for &(memory, value) in remembered {
-            memory.set(value);
         }
     }
 }

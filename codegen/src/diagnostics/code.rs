@@ -153,6 +153,8 @@ codes! {
     SwitchingTable = 408,
     /// Two sensors in the low legs cannot see the current of a leg that is off.
     UnreadableLeg = 409,
+    /// Legs cannot turn on and off within a period.
+    IntervalsUnavailable = 410,
     /// The inductance may lie outside the loop's stable range.
     InductanceOutsideStableRange = 501,
     /// The resistance may lie outside the loop's stable range.

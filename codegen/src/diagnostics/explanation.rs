@@ -391,8 +391,8 @@ impl Code {
             ),
             Self::OptionUnavailable => say(
                 "The option is known, and this version does not have it.",
-                "kind = \"pdcc\"\nmodulation = \"table2\"",
-                "kind = \"pdcc\"\nmodulation = \"three_phase\"",
+                "kind = \"pi-pwm\"\nmodulation = \"pair\"",
+                "kind = \"pi-pwm\"\nmodulation = \"three_phase\"",
                 "Use a word that the message lists.",
             ),
             Self::OptionOfOtherController => say(
@@ -430,6 +430,12 @@ impl Code {
                 "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"\nkind = \"phcc\"\ncandidates = \"table2\"",
                 "current_sensing = \"low_side\"\nsettling_time = \"1 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"\nkind = \"phcc\"",
                 "Choose options that turn no leg off, or a board with sensors in the phases.",
+            ),
+            Self::IntervalsUnavailable => say(
+                "The paper's modulator turns legs on and off within a period, which not every board and not every option allows.",
+                "leg_enables = \"per_period\"\nkind = \"pdcc\"\nmodulation = \"table2\"",
+                "leg_enables = \"per_period\"\nkind = \"pdcc\"\nmodulation = \"pair\"",
+                "Choose another modulation, or a board whose timer loads the output enables by a compare event.",
             ),
             _ => say(
                 "A switching table has 48 rows of vectors: six sectors, with and without commutation, four states of the bands.",

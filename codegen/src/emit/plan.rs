@@ -258,7 +258,9 @@ fn users(function: &Function) -> Vec<Vec<User>> {
     for (output, value) in &function.outputs {
         let user = match output {
             Output::Leg(_) => User::Leg,
-            Output::Compare(_) | Output::Probe(_) => User::Other,
+            Output::Compare(_) | Output::End(_) | Output::States(_) | Output::Probe(_) => {
+                User::Other
+            }
         };
         users[value.index()].push(user);
     }

@@ -365,6 +365,11 @@ impl Program {
         self.place_of(sought).map(|place| &self.params[place].1)
     }
 
+    /// Whether the step's command has intervals with legs of their own.
+    pub fn has_intervals(&self) -> bool {
+        self.step.output(Output::End(0)).is_some()
+    }
+
     /// All persistent words: state, then set-point.
     pub fn words(&self) -> impl Iterator<Item = &Word> {
         // Whether the bus is fresh the runtime computes; nothing keeps it.

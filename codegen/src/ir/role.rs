@@ -36,6 +36,10 @@ pub enum Output {
     Compare(Phase),
     /// The state of a leg.
     Leg(Phase),
+    /// The end of one of the first two intervals, from 0.
+    End(u8),
+    /// The states of the legs in an interval, two bits each; from 0.
+    States(u8),
     /// A probed value, by its name.
     Probe(&'static str),
 }
@@ -45,6 +49,8 @@ impl fmt::Display for Output {
         match self {
             Self::Compare(phase) => write!(f, "compare_{phase}"),
             Self::Leg(phase) => write!(f, "leg_{phase}"),
+            Self::End(interval) => write!(f, "end_{}", interval + 1),
+            Self::States(interval) => write!(f, "states_{}", interval + 1),
             Self::Probe(name) => f.write_str(name),
         }
     }

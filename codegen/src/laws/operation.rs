@@ -122,6 +122,12 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
             format!("The current of phase {z}, which has no sensor, is -(i_{x} + i_{y}); its count in the sample is ignored."),
         ]),
     }
+    if spec.controller.has_intervals() {
+        lines.extend([
+            String::new(),
+            "The command has three intervals, at whose ends legs turn on and off: the timer changes its output enables by compare events.".to_owned(),
+        ]);
+    }
     lines.extend(rotor_sensor(spec));
     lines
 }

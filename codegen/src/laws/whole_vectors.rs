@@ -202,13 +202,13 @@ impl<'b> CurrentLoop<'_, 'b> {
         if let (Some(held), true) = (&front.held, self.tables_left_over()) {
             let left = vector.tabled_left_over(held);
             remembered.extend(self.fold(held, left));
-            self.remember(front, &command, None, None, remembered);
+            self.remember(front, command, None, None, remembered);
             return;
         }
         let off_leg = self.needs.off_leg;
         let v_cmd = (!off_leg).then(|| vector.voltage());
         let applied = off_leg.then(|| vector.terminals());
-        self.remember(front, &command, v_cmd, applied, remembered);
+        self.remember(front, command, v_cmd, applied, remembered);
     }
 }
 

@@ -47,10 +47,12 @@ pub use angle::{AngleDirection, AngleSensor, RotorSource};
 pub use ast::{Board, BoardFile, Field, OF_CORE, SpecAst, TARGET};
 pub use board_library::{BOARDS, LibraryBoard};
 pub use check::{Origin, Origins, check};
+pub(crate) use controller::TABLE2;
 pub use controller::{
     Candidates, CommonMode, ControllerSpec, Core, Discretisation, EmfSource, FcsMpcSpec, KINDS,
     Kind, Learning, LimitRule, LoopOptions, Modulation, OffLegModel, PPwmSpec, PdccSpec,
-    PhccCandidates, PhccSpec, PiPwmSpec, Reference, SpeedLoop, SwitchingTable, Target,
+    PhccCandidates, PhccSpec, PiModulation, PiPwmSpec, Reference, SpeedLoop, SwitchingTable,
+    Target, ZeroVector,
 };
 pub use emf_shape::{proportional_current, zero_sum_integral};
 pub use envelope::Envelope;

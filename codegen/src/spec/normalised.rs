@@ -236,7 +236,7 @@ mod tests {
         BusCurrents, BusSource, CommonMode, ControllerSpec, Core, CurrentSensing, CurrentSensor,
         Discretisation, EmfShape, EmfSource, HALL_ANGLES, InverterSpec, Learning, LimitRule,
         LoopOptions, Modulation, MotorSpec, PdccSpec, Reference, RotorSensing, SensedPhases,
-        SensingTimes, Spec,
+        SensingTimes, Spec, ZeroVector,
     };
 
     fn hub_drive() -> Spec {
@@ -295,6 +295,7 @@ mod tests {
             },
             controller: ControllerSpec::Pdcc(PdccSpec {
                 modulation: Modulation::ThreePhase,
+                zero: ZeroVector::AllLow,
                 saturation: LimitRule::TorquePriority,
                 dead_time_compensation: false,
                 common_mode: CommonMode::Centred,

@@ -130,6 +130,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("current_sum_tolerance", &[D::Current], 1e-4, 2e4, "2 A"),
     integer("current_sum_samples", 0, 10_000, "20"),
     quantity("minimum_low_time", &[D::Time], 0.0, 1e-3, "2 us"),
+    word("leg_enables", "per_period"),
     integer("pwm_per_control", 1, 16, "3"),
     quantity("offset_tolerance", &[D::Current], 1e-5, 2e4, "2 A"),
     quantity("trip_current", &[D::Current], 0.01, 2e4, "38 A"),

@@ -221,6 +221,22 @@ static void two_periods(void)
 static const hexagen_units units = { { 4, 1 }, { 4, 1 }, { 4, 1 }, { 4, 1 },
     { 0, 1, 2, 3, 4, 5, 6, 0 } };
 
+/* a high, then a against c, then a and c low with b off; 0 high, 1 low, 2 off. */
+static void intervals_are_shown_as_legs(void)
+{
+    const hexagen_intervals intervals = { { 300, 700 }, { 36, 24, 25 } };
+    const hexagen_legs legs = hexagen_legs_of(intervals);
+    const hexagen_legs off = hexagen_legs_of(hexagen_all_intervals(HEXAGEN_LEG_OFF));
+    CHECK(hexagen_leg_in(intervals, 0, 0) == HEXAGEN_LEG_PULSED);
+    CHECK(hexagen_leg_in(intervals, 0, 1) == HEXAGEN_LEG_LOW);
+    CHECK(hexagen_leg_in(intervals, 1, 1) == HEXAGEN_LEG_OFF);
+    CHECK(legs.compare[0] == 700 && legs.compare[1] == 0 && legs.compare[2] == 0);
+    CHECK(legs.state[0] == HEXAGEN_LEG_PULSED && legs.state[1] == HEXAGEN_LEG_PULSED);
+    CHECK(legs.state[2] == HEXAGEN_LEG_PULSED);
+    CHECK(off.state[0] == HEXAGEN_LEG_OFF && off.state[1] == HEXAGEN_LEG_OFF);
+    CHECK(off.state[2] == HEXAGEN_LEG_OFF);
+}
+
 static void signals_are_of_one_period(void)
 {
     int found = 0;
@@ -319,6 +335,7 @@ int main(void)
     passes_a_fault_on_once();
     shows_a_call_that_ended_for_good();
     never_tears_words_that_belong_together();
+    intervals_are_shown_as_legs();
     signals_are_of_one_period();
     no_answer_is_lost();
     who_asks_is_not_torn_by_another_who_asks();

@@ -12,6 +12,7 @@ use hexagen_firmware::wire::{BLOCK, Digest, Record, encode_outputs};
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, Delay};
 use hexagen_lab::engine::{MotorSource, Prepared, plant_of, prepare};
 use hexagen_lab::plant::{Plant, Truth};
+use hexagen_reference::AnyCommand;
 use hexagen_reference::verify::{Action, Context, Stimulus, Subject};
 use std::f64::consts::TAU;
 
@@ -204,8 +205,8 @@ fn delay(drive: &Prepared) -> Delay {
 struct InLoop<'c, C>(&'c mut C);
 
 impl<C: Called> CurrentLoop for InLoop<'_, C> {
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
-        self.0.step(*sample)
+    fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
+        self.0.step(*sample).into()
     }
 }
 
@@ -242,7 +243,8 @@ impl Called for OnHost<'_> {
     }
 
     fn step(&mut self, sample: Sample) -> Legs {
-        self.subject.step(&sample)
+        // The firmware takes pulses only.
+        self.subject.step(&sample).legs().unwrap_or_default()
     }
 }
 
@@ -345,7 +347,7 @@ impl<'g> Recorder<'g> {
                 Some(Action::Stop(_)) | None => {}
             }
             let legs = self.step(sample);
-            stimulus.respond(legs);
+            stimulus.respond(legs.into());
         }
         Ok(())
     }

@@ -3,12 +3,13 @@
 use crate::{Inputs, angle, limits, sensors};
 use hexagen::arith::{Word, scaled_torque};
 use hexagen::{
-    AngleSensor, Checked, Command, Fault, LegState, Legs, Limits, Rest, Sample, Sensors, Supervisor,
+    AngleSensor, Checked, Command, Fault, Intervals, LegState, Legs, Limits, Rest, Sample, Sensors,
+    Supervisor,
 };
 use hexagen_codegen::interface::{Interface, Watch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
-use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
+use hexagen_reference::{AnyCommand, Stop};
 use std::sync::{Arc, OnceLock};
 
 /// A drive with an interpreted law and the common supervisor.
@@ -57,12 +58,76 @@ impl BusWatch {
     }
 }
 
+/// Indices of the words of a command.
+#[derive(Clone, Copy, Debug)]
+enum CommandPlaces {
+    Legs {
+        compare: [usize; 3],
+        state: [usize; 3],
+    },
+    Intervals {
+        ends: [usize; 2],
+        states: [usize; 3],
+    },
+}
+
+impl CommandPlaces {
+    fn of(program: &Program) -> Option<Self> {
+        let place = |sought: Output| {
+            let mut outputs = program.step.outputs.iter();
+            outputs.position(|(output, _)| *output == sought)
+        };
+        let phases = |of: fn(Phase) -> Output| {
+            let [a, b, c] = Phase::ALL.map(|phase| place(of(phase)));
+            Some([a?, b?, c?])
+        };
+        let of_legs = || {
+            Some(Self::Legs {
+                compare: phases(Output::Compare)?,
+                state: phases(Output::Leg)?,
+            })
+        };
+        let [first, second] = [0, 1].map(|interval| place(Output::End(interval)));
+        let states = [0, 1, 2].map(|interval| place(Output::States(interval)));
+        match (first, second, states) {
+            (Some(first), Some(second), [Some(one), Some(two), Some(three)]) => {
+                Some(Self::Intervals {
+                    ends: [first, second],
+                    states: [one, two, three],
+                })
+            }
+            _ => of_legs(),
+        }
+    }
+
+    /// The command of a step with these results.
+    fn command(self, results: &[i32]) -> AnyCommand {
+        let half = |place: usize| results[place] as u16;
+        match self {
+            Self::Legs { compare, state } => {
+                let state = state.map(|place| LegState::from_number(results[place]));
+                Legs::new(compare.map(half), state).into()
+            }
+            Self::Intervals { ends, states } => {
+                Intervals::of_states(ends.map(half), states.map(half)).into()
+            }
+        }
+    }
+
+    /// All legs in one state.
+    fn at_rest(self, state: LegState) -> AnyCommand {
+        match self {
+            Self::Legs { .. } => Legs::all(state).into(),
+            Self::Intervals { .. } => Intervals::all(state).into(),
+        }
+    }
+}
+
 /// Indices of a drive's input and output words.
 #[derive(Clone, Debug)]
 struct Places {
     inputs: Inputs,
-    compare: [usize; 3],
-    legs: [usize; 3],
+    command: CommandPlaces,
     /// Index of the set-point that a reset clears.
     set_point: usize,
     has_speed: bool,
@@ -72,19 +137,10 @@ struct Places {
 
 impl Places {
     fn of(program: &Program) -> Option<Self> {
-        let three = |of: fn(Phase) -> Output| {
-            let place = |phase| {
-                let (sought, mut outputs) = (of(phase), program.step.outputs.iter());
-                outputs.position(|(output, _)| *output == sought)
-            };
-            let [a, b, c] = Phase::ALL.map(place);
-            Some([a?, b?, c?])
-        };
         let demand = |demand| program.place_of(demand);
         Some(Self {
             inputs: Inputs::of(program)?,
-            compare: three(Output::Compare)?,
-            legs: three(Output::Leg)?,
+            command: CommandPlaces::of(program)?,
             set_point: demand(Demand::Speed).or_else(|| demand(Demand::Current))?,
             has_speed: demand(Demand::Speed).is_some(),
             bus_is_fresh: demand(Demand::BusIsFresh),
@@ -154,7 +210,7 @@ impl<'g> Interpreted<'g> {
         self.machine.value(value)
     }
 
-    fn try_step(&mut self, sample: &Sample) -> Result<Legs, Escape> {
+    fn try_step(&mut self, sample: &Sample) -> Result<AnyCommand, Escape> {
         let Self {
             machine,
             supervisor,
@@ -173,7 +229,7 @@ impl<'g> Interpreted<'g> {
             None => match supervisor.rest(limits, sensors, sample) {
                 (checked, Rest::Legs(leg)) => {
                     machine.rest(&places.inputs.words(&with_angle(checked)))?;
-                    return Ok(Legs::all(leg));
+                    return Ok(places.command.at_rest(leg));
                 }
                 (checked, Rest::Control) => with_angle(checked),
                 (checked, Rest::Against(direction)) => {
@@ -188,14 +244,9 @@ impl<'g> Interpreted<'g> {
             },
         };
         let results = machine.step(&places.inputs.words(&checked))?;
-        let legs = Legs::new(
-            places.compare.map(|place| results[place] as u16),
-            places
-                .legs
-                .map(|place| LegState::from_number(results[place])),
-        );
-        supervisor.follow_command(sensors, legs.on());
-        Ok(legs)
+        let command = places.command.command(&results);
+        supervisor.follow_command(sensors, command.on());
+        Ok(command)
     }
 
     fn set(&mut self, setter: Setter, word: i32) {
@@ -212,7 +263,7 @@ fn place_of(program: &Program, word: &str) -> usize {
 }
 
 impl Subject for Interpreted<'_> {
-    fn step(&mut self, sample: &Sample) -> Legs {
+    fn step(&mut self, sample: &Sample) -> AnyCommand {
         if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
             self.supervisor.trip(fault);
         }
@@ -226,7 +277,7 @@ impl Subject for Interpreted<'_> {
         }
         self.try_step(sample).unwrap_or_else(|escape| {
             self.escape.get_or_init(|| escape);
-            Legs::OFF
+            self.places.command.at_rest(LegState::Off)
         })
     }
 

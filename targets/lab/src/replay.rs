@@ -4,10 +4,11 @@
 use crate::Interpreted;
 use crate::engine::Prepared;
 use crate::log::{Call, LogError, LogRow, rows};
-use hexagen::{Command, Legs, Sample};
+use hexagen::{Command, Sample};
 use hexagen_codegen::interface::Unit;
 use hexagen_codegen::ir::{Phase, Told, Value};
 use hexagen_codegen::spec::RotorSensing;
+use hexagen_reference::AnyCommand;
 use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
 use serde::Serialize;
@@ -114,8 +115,8 @@ pub fn replay(
         let (row, line) = row?;
         let sample = sample(drive, &row).map_err(|what| line.error(&what))?;
         give(drive, &mut subject, &row).map_err(|what| line.error(&what))?;
-        let legs = subject.step(&sample);
-        let row = view.row(period, &subject, legs);
+        let command = subject.step(&sample);
+        let row = view.row(period, &subject, command);
         for (quantity, cell) in replayed.quantities.iter_mut().zip(&row[STATE.len()..]) {
             if let Cell::Number(value) = cell {
                 quantity.take(*value);
@@ -270,7 +271,7 @@ impl<'g> View<'g> {
             .collect()
     }
 
-    fn row(&self, period: usize, drive: &Interpreted<'_>, legs: Legs) -> Vec<Cell> {
+    fn row(&self, period: usize, drive: &Interpreted<'_>, command: AnyCommand) -> Vec<Cell> {
         let status = drive.supervisor().status();
         let mut row = vec![
             Cell::Word(period as i64),
@@ -280,7 +281,7 @@ impl<'g> View<'g> {
                 .fault
                 .map_or(Cell::Absent, |fault| Cell::Name(format!("{fault:?}"))),
         ];
-        row.extend(legs.on().map(|on| {
+        row.extend(command.on().map(|on| {
             on.map_or(Cell::Absent, |on| {
                 Cell::rounded(f64::from(on) / self.timer_period, 6)
             })

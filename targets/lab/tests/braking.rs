@@ -6,8 +6,8 @@ use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, Recorder, Step};
 use hexagen_lab::engine::{MotorSource, Prepared, library, plant_of, prepare, run_of};
 use hexagen_lab::plant::{Mechanics, Observer, Plant, Segment, Truth};
 use hexagen_lab::{Interpreted, closed_loop::Trip};
-use hexagen_reference::Stop;
 use hexagen_reference::verify::Subject;
+use hexagen_reference::{AnyCommand, Stop};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -24,7 +24,7 @@ const STOPPING: f64 = 0.05;
 struct InLoop<'g>(Interpreted<'g>);
 
 impl CurrentLoop for InLoop<'_> {
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
         self.0.step(sample)
     }
 
@@ -52,7 +52,7 @@ impl Recorder for Seen {
     fn period(&mut self, step: &Step<'_>) {
         let currents = step.truth.currents.map(f64::abs);
         self.current = currents.into_iter().fold(self.current, f64::max);
-        match step.applied {
+        match step.applied.legs().expect("pulses") {
             Legs::LOW => self.low += 1,
             Legs::OFF => self.off += 1,
             legs if legs.state().contains(&LegState::Pulsed) => self.pulsed += 1,

@@ -8,6 +8,7 @@ use hexagen_lab::Interpreted;
 use hexagen_lab::closed_loop::{FiguresOfMerit, measure};
 use hexagen_lab::engine::{Model, MotorSource, plant_of, prepare, run_of};
 use hexagen_lab::plant::{Plant, PlantParams};
+use hexagen_reference::AnyCommand;
 use hexagen_reference::verify::Subject;
 use hexagen_tests::sensors::{LOW_SIDE, specification};
 use std::f64::consts::TAU;
@@ -54,7 +55,7 @@ fn run_with(
     let mut params = plant_of(&checked(own).0);
     change(&mut params);
     let mut plant = Plant::new(params, 0.117, rpm * TAU / 60.0).expect("a plant");
-    let mut pending = hexagen::Legs::OFF;
+    let mut pending = AnyCommand::default();
     let mut torque = 0.0;
     for period in 0..PERIODS {
         let sampled = plant.sample(pending);

@@ -8,6 +8,7 @@ use hexagen_lab::closed_loop::{
     quasi_square, speed_limit,
 };
 use hexagen_lab::plant::{PlantParams, Truth};
+use hexagen_reference::AnyCommand;
 use std::f64::consts::{PI, TAU};
 
 const R: f64 = 0.135;
@@ -85,7 +86,7 @@ fn mean_emf(truth: &Truth, from: f64) -> [f64; 3] {
 }
 
 impl CurrentLoop for Deadbeat {
-    fn step(&mut self, _: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, _: &Sample, truth: &Truth) -> AnyCommand {
         let (a, b) = (1.0 - R * T_S / L, T_S / L);
         let turn = truth.omega_e * T_S;
         let (e_now, e_next) = (
@@ -125,6 +126,7 @@ impl CurrentLoop for Deadbeat {
             t.map(|x| (x / V_BUS * f64::from(N)).round() as u16),
             [LegState::Pulsed; 3],
         )
+        .into()
     }
 }
 
@@ -237,10 +239,11 @@ fn all_four_quadrants_agree() {
 struct Faltering(Option<Deadbeat>);
 
 impl CurrentLoop for Faltering {
-    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> AnyCommand {
         self.0
             .as_mut()
-            .map_or(Legs::OFF, |controller| controller.step(sample, truth))
+            .map(|controller| controller.step(sample, truth))
+            .unwrap_or_default()
     }
 }
 

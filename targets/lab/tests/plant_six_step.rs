@@ -10,6 +10,7 @@ use hexagen_lab::closed_loop::{
 };
 use hexagen_lab::engine::{Model, MotorSource, SetPoint, plant_of, prepare, run_of};
 use hexagen_lab::plant::{Plant, PlantParams, Truth};
+use hexagen_reference::AnyCommand;
 use std::f64::consts::TAU;
 
 const R: f64 = 0.135;
@@ -64,7 +65,7 @@ fn pair(theta_e: f64) -> (usize, usize) {
 }
 
 impl CurrentLoop for SixStep {
-    fn step(&mut self, _: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, _: &Sample, truth: &Truth) -> AnyCommand {
         let (plus, minus) = pair(truth.theta_e);
         let i = truth.currents;
         let current = match self.held {
@@ -79,7 +80,7 @@ impl CurrentLoop for SixStep {
         state[plus] = LegState::Pulsed;
         compare[plus] = (line / V_BUS * N).round() as u16;
         state[minus] = LegState::Low;
-        Legs::new(compare, state)
+        Legs::new(compare, state).into()
     }
 }
 

@@ -1,9 +1,10 @@
 //! A run on the simulated plant, logged and replayed: the commands are the same, and the words are those of the run.
 
-use hexagen::{Command, Legs};
+use hexagen::Command;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, plant_of};
 use hexagen_lab::plant::Plant;
 use hexagen_lab::replay::{columns, replay, replay_csv};
+use hexagen_reference::AnyCommand;
 use hexagen_reference::verify::Subject;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -21,7 +22,7 @@ fn drive(motor: &str, board: Option<&str>, variant: &str) -> Prepared {
 }
 
 /// The log of a run at half of rated speed with a step of the set-point, and its commands.
-fn logged(drive: &Prepared) -> (String, Vec<Legs>) {
+fn logged(drive: &Prepared) -> (String, Vec<AnyCommand>) {
     let omega_m = 0.5 * drive.spec.motor.rated_speed;
     let mut plant = Plant::new(plant_of(&drive.spec), 0.117, omega_m).expect("a plant");
     let mut engine = drive.interpreted();
@@ -32,7 +33,7 @@ fn logged(drive: &Prepared) -> (String, Vec<Legs>) {
     let has_angle = drive.spec.angle_sensor().is_some();
     let rotor = if has_angle { "angle" } else { "hall" };
     let mut log = format!("adc_1,adc_2,{third}{rotor},{ticks}current_a\n");
-    let mut pending = Legs::OFF;
+    let mut pending = AnyCommand::default();
     let mut commands = Vec::new();
     for period in 0..PERIODS {
         let sample = plant.sample(pending);

@@ -5,6 +5,7 @@
 //! rounding point. Both are built from a drive's normalised specification; only the format table is
 //! taken from the generator, as data.
 
+mod command;
 mod discrete_phase;
 mod emf_motion;
 mod emf_shape;
@@ -16,6 +17,7 @@ mod spec;
 pub mod verify;
 mod word;
 
+pub use command::AnyCommand;
 pub use discrete_phase::DiscretePhase;
 pub use emf_shape::EmfShape;
 pub use error::Error;
@@ -27,5 +29,6 @@ pub use spec::{
     Bus, BusSense, Candidates, CommonMode, CommutationEnd, Controller, Discretisation,
     EmfShapeKind, EmfSource, FcsMpc, HallCapture, Inverter, LoopOptions, Modulation, Motor, OffLeg,
     PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, SensedPhases, Spec, Switch, SwitchingTable,
+    Zero,
 };
 pub use verify::assert_bit_true;

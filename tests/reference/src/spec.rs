@@ -13,7 +13,7 @@ use serde::Deserialize;
 pub use controller::{
     Candidates, CommonMode, CommutationEnd, Controller, Discretisation, EmfSource, FcsMpc,
     LoopOptions, Modulation, OffLeg, PPwm, Pdcc, Phcc, PiPwm, Reference, Saturation, Switch,
-    SwitchingTable,
+    SwitchingTable, Zero,
 };
 
 /// A whole normalised specification.
@@ -461,6 +461,12 @@ impl Spec {
                 ..
             })
             | Controller::Phcc(Phcc {
+                commutation_threshold,
+                commutation_timeout,
+                ..
+            })
+            | Controller::PiPwm(PiPwm {
+                modulation: Modulation::Table2,
                 commutation_threshold,
                 commutation_timeout,
                 ..

@@ -15,8 +15,8 @@ pub use report::Report;
 pub use stimulus::{Action, Context, Stimulus, Stream};
 pub use subject::{Compiled, Subject};
 
-use crate::{BitTrue, FormatTable, Mode, Spec};
-use hexagen::{Control, Drive, Fault, Format, Legs, Sample};
+use crate::{AnyCommand, BitTrue, FormatTable, Mode, Spec};
+use hexagen::{Command, Control, Drive, Fault, Format, Sample};
 
 /// Steps that [`assert_bit_true`] runs.
 pub const DEFAULT_STEPS: u64 = 500_000;
@@ -28,7 +28,10 @@ const SESSION: u64 = 1 << 16;
 ///
 /// # Errors
 /// If they differ, or no model can be built from the drive's specification and formats.
-pub fn verify<C: Control<Command = Legs>>(steps: u64, seed: u64) -> Result<Report, VerifyError> {
+pub fn verify<C: Control<Command: Into<AnyCommand>>>(
+    steps: u64,
+    seed: u64,
+) -> Result<Report, VerifyError> {
     let names: Vec<_> = Drive::<C>::state_names().collect();
     let new = Compiled::<C>::new;
     verify_subject(C::SPEC, C::FORMATS, &names, new, steps, seed)
@@ -38,7 +41,7 @@ pub fn verify<C: Control<Command = Legs>>(steps: u64, seed: u64) -> Result<Repor
 ///
 /// # Panics
 /// If drive and model differ, or no model can be built.
-pub fn assert_bit_true<C: Control<Command = Legs>>() {
+pub fn assert_bit_true<C: Control<Command: Into<AnyCommand>>>() {
     if let Err(error) = verify::<C>(DEFAULT_STEPS, 1) {
         panic!("{} is not bit-true: {error}", C::NAME);
     }
@@ -176,7 +179,7 @@ impl<S: Subject> Pair<S> {
 
     /// One step of both; returns the differences, if any.
     #[inline]
-    fn step(&mut self, sample: Sample) -> Result<Legs, Vec<Difference>> {
+    fn step(&mut self, sample: Sample) -> Result<AnyCommand, Vec<Difference>> {
         std::mem::swap(&mut self.before, &mut self.expected);
         let found = self.subject.step(&sample);
         let expected = self.model.step(&sample);
@@ -194,7 +197,7 @@ impl<S: Subject> Pair<S> {
     }
 
     #[cold]
-    fn differences(&self, found: Legs, expected: Legs) -> Vec<Difference> {
+    fn differences(&self, found: AnyCommand, expected: AnyCommand) -> Vec<Difference> {
         let mut differences = Vec::new();
         let mut note = |name: &str, before: Option<i32>, found: i32, expected: i32| {
             differences.push(Difference {
@@ -204,11 +207,18 @@ impl<S: Subject> Pair<S> {
                 expected,
             });
         };
-        for (phase, name) in ["a", "b", "c"].into_iter().enumerate() {
-            let compare = [found, expected].map(|legs| i32::from(legs.compare()[phase]));
-            note(&format!("compare_{name}"), None, compare[0], compare[1]);
-            let state = [found, expected].map(|legs| legs.state()[phase] as i32);
-            note(&format!("state_{name}"), None, state[0], state[1]);
+        let names = match expected {
+            AnyCommand::Legs(_) => ["compare_a", "compare_b", "compare_c", "states", "", ""],
+            AnyCommand::Intervals(_) => ["end_1", "end_2", "", "states_1", "states_2", "states_3"],
+        };
+        let [found_words, expected_words] = [found, expected].map(Command::words);
+        for (word, name) in names
+            .into_iter()
+            .enumerate()
+            .filter(|(_, name)| !name.is_empty())
+        {
+            let [found, expected] = [found_words, expected_words].map(|words| words[word].into());
+            note(name, None, found, expected);
         }
         note(
             "fault()",

@@ -21,8 +21,10 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 30] = [
+const VARIANTS: [(&str, &str, Fields); 32] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
+    ("pdcc.table2", "pdcc:modulation=table2,zero=pair_low", &[]),
+    ("pi-pwm.table2", "pi-pwm:modulation=table2", &[]),
     (
         "pdcc.model-advance",
         "pdcc:emf=model,advance=2,hall_capture=timer",

@@ -53,12 +53,25 @@ pub fn option_of_other_controller(
     )
 }
 
-/// An option that this version does not have.
-pub fn option_planned(at: &Location, option: &str) -> Diagnostic {
+/// A `modulation` whose intervals the board or another setting does not allow; `why` is a clause about turning legs on and
+/// off within a period.
+pub fn intervals_unavailable(
+    modulation: &Part,
+    cause: &Part,
+    why: &str,
+    remedy: &str,
+) -> Diagnostic {
     Diagnostic::new(
-        Code::OptionUnavailable,
-        at,
-        format!("`{option}` is not available in this version; remove it"),
+        Code::IntervalsUnavailable,
+        &modulation.location,
+        format!(
+            "`modulation`: {} turns legs on and off within a PWM period, {why}; {remedy}",
+            modulation.given
+        ),
+    )
+    .with_note(
+        &cause.location,
+        format!("`{}`: {}", cause.field, cause.given),
     )
 }
 
@@ -153,14 +166,16 @@ pub fn clock_without_core(clock: &Part, cores: &[&str], portable: Option<&Locati
     }
 }
 
-/// `reference: proportional` with `modulation: pair`.
-pub fn proportional_pair(at: &Location, modulation: &Location) -> Diagnostic {
+/// `reference: proportional` with a `modulation` that turns a leg off.
+pub fn proportional_pair(at: &Location, modulation: &str, modulation_at: &Location) -> Diagnostic {
     Diagnostic::new(
         Code::DependentField,
         at,
-        "`reference`: proportional needs current in all three phases, but `modulation: pair` turns one leg off outside commutations (7 to 8 % less torque, 30 to 34 % ripple); choose `modulation: three_phase` or `reference: quasi_square`",
+        format!(
+            "`reference`: proportional needs current in all three phases, but `modulation: {modulation}` turns a leg off outside commutations (with `pair` 7 to 8 % less torque, 30 to 34 % ripple); choose `modulation: three_phase` or `reference: quasi_square`"
+        ),
     )
-    .with_note(modulation, "`modulation: pair`")
+    .with_note(modulation_at, format!("`modulation: {modulation}`"))
 }
 
 /// A hysteresis band as wide as the rated current.

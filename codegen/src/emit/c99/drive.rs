@@ -397,11 +397,18 @@ impl Drive<'_> {
             self.demand()
         );
         body.push_str(&lines(&[&check]));
+        let has_intervals = self.program.has_intervals();
+        let [kind, command, at_rest] = if has_intervals {
+            let at_rest = "hexagen_all_intervals(period.legs.state[0])";
+            ["hexagen_intervals", "intervals", at_rest]
+        } else {
+            ["hexagen_legs", "legs", "period.legs"]
+        };
         let _ = write!(
             body,
             "{INDENT}{INDENT}const hexagen_period period = step_at_rest(drive, sample);\n\
              {INDENT}{INDENT}if (!period.is_controlled) {{\n\
-             {INDENT}{INDENT}{INDENT}return period.legs;\n{INDENT}{INDENT}}}\n\
+             {INDENT}{INDENT}{INDENT}return {at_rest};\n{INDENT}{INDENT}}}\n\
              {INDENT}{INDENT}checked = period.checked;\n{INDENT}}}\n"
         );
         let takes_rotor = self.step.arguments[2].contains(&"rotor");
@@ -414,20 +421,25 @@ impl Drive<'_> {
             signals.push_str(&observation);
         }
         let step = self.call(2, "step", "rotor");
-        body.push_str(&lines(&[&format!("const hexagen_legs legs = {step};")]));
+        body.push_str(&lines(&[&format!("const {kind} {command} = {step};")]));
         let third = self.interface.limits.sensors.third;
         if third.is_some_and(|third| third.readable.is_some()) {
             body.push_str(&lines(&[
                 "hexagen_follow_legs(&drive->supervisor, &limits, &legs);",
             ]));
         }
+        let shown = if has_intervals {
+            "hexagen_legs_of(intervals)"
+        } else {
+            command
+        };
         let _ = write!(
             signals,
             "{INDENT}if (hexagen_is_asked(&drive->signals)) {{\n\
-             {INDENT}{INDENT}hexagen_answer(&drive->signals, checked, legs, observation);\n{INDENT}}}\n"
+             {INDENT}{INDENT}hexagen_answer(&drive->signals, checked, {shown}, observation);\n{INDENT}}}\n"
         );
         body.push_str(where_defined(SIGNALS, &signals).trim_end());
-        let _ = write!(body, "\n{INDENT}return legs;\n");
+        let _ = write!(body, "\n{INDENT}return {command};\n");
         let effect = match self.interface.delay {
             0 => "The command takes effect at once.",
             _ => "The command takes effect in the next period.",
@@ -451,7 +463,7 @@ impl Drive<'_> {
         Method {
             doc: text,
             head: format!(
-                "hexagen_legs {}({}, const hexagen_sample *sample)",
+                "{kind} {}({}, const hexagen_sample *sample)",
                 self.names.public("step"),
                 self.drive()
             ),

@@ -264,8 +264,14 @@ impl<'a> StepFunctions<'a> {
         body.push_str(&self.body(Part::Control, &kept));
         body.push_str(&self.observation());
         body.push('\n');
-        body.push_str(&self.legs());
-        let head = ["hexagen_legs", "step", "A controlled period."];
+        let command = if self.context.program.has_intervals() {
+            body.push_str(&self.intervals());
+            "hexagen_intervals"
+        } else {
+            body.push_str(&self.legs());
+            "hexagen_legs"
+        };
+        let head = [command, "step", "A controlled period."];
         let arguments = ["drive", "sample", "rotor", "observation"];
         self.entry(head, &arguments, &body)
     }
@@ -281,17 +287,35 @@ impl<'a> StepFunctions<'a> {
         all.into_iter().filter_map(tell).collect()
     }
 
+    /// A word of the command in 16 bits, without sign.
+    fn half(&self, output: Output) -> String {
+        let printer = self.printer(false);
+        let value = self.function().output(output);
+        match value.map(|value| (value, printer.scope.literal(value))) {
+            None => "0".to_owned(),
+            Some((_, Some(literal))) => literal.to_string(),
+            Some((value, None)) => printer.cast("uint16_t", value),
+        }
+    }
+
+    /// A command of intervals.
+    fn intervals(&self) -> String {
+        let ends = [0, 1].map(|interval| self.half(Output::End(interval)));
+        let states = [0, 1, 2].map(|interval| self.half(Output::States(interval)));
+        let inner = INDENT.repeat(2);
+        [
+            format!("{INDENT}const hexagen_intervals intervals = {{\n"),
+            wrapped(&inner, &format!("{{ {} }},", ends.join(", "))),
+            wrapped(&inner, &format!("{{ {} }}", states.join(", "))),
+            format!("{INDENT}}};\n{INDENT}return intervals;\n"),
+        ]
+        .concat()
+    }
+
     /// The command; old state words in it are read before any is written.
     fn legs(&self) -> String {
         let printer = self.printer(false);
-        let compare = Phase::ALL.map(|phase| {
-            let value = self.function().output(Output::Compare(phase));
-            match value.map(|value| (value, printer.scope.literal(value))) {
-                None => "0".to_owned(),
-                Some((_, Some(literal))) => literal.to_string(),
-                Some((value, None)) => printer.cast("uint16_t", value),
-            }
-        });
+        let compare = Phase::ALL.map(|phase| self.half(Output::Compare(phase)));
         let state = Phase::ALL.map(|phase| {
             let state = self.function().output(Output::Leg(phase));
             state.map_or_else(

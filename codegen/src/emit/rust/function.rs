@@ -233,6 +233,7 @@ impl<'a> StepFunctions<'a> {
         let (state, sample) = (named("state", has_state), named("sample", has_inputs));
         let rotor = named("rotor", self.has_rotor());
         let kind = self.rotor_type();
+        let command = command_type(self.context.program);
         let (observation, legs) = (self.observation(), self.legs(whole));
         let observed = named("observation", !observation.as_str().is_empty());
         quote! {
@@ -243,7 +244,7 @@ impl<'a> StepFunctions<'a> {
                 #sample: &Checked,
                 #rotor: #kind,
                 #observed: &mut Observation,
-            ) -> Legs {
+            ) -> #command {
                 #words
                 #inputs
                 #pattern
@@ -277,8 +278,8 @@ impl<'a> StepFunctions<'a> {
             return look_up_command(whole, &scope.whole(whole.index));
         }
         let function = self.function();
-        let compare = Phase::ALL.map(|phase| {
-            let Some(value) = function.output(Output::Compare(phase)) else {
+        let half = |output: Output| {
+            let Some(value) = function.output(output) else {
                 return quote!(0);
             };
             scope.literal(value).map_or_else(
@@ -288,7 +289,13 @@ impl<'a> StepFunctions<'a> {
                 },
                 |literal| number(i64::from(literal)),
             )
-        });
+        };
+        if self.context.program.has_intervals() {
+            let ends = [0, 1].map(|interval| half(Output::End(interval)));
+            let states = [0, 1, 2].map(|interval| half(Output::States(interval)));
+            return quote!(Intervals::of_states([#(#ends),*], [#(#states),*]));
+        }
+        let compare = Phase::ALL.map(|phase| half(Output::Compare(phase)));
         let states = Phase::ALL.map(|phase| {
             let state = function.output(Output::Leg(phase));
             state.map_or_else(
@@ -298,6 +305,15 @@ impl<'a> StepFunctions<'a> {
         });
         let states = array(&states);
         quote!(Legs::new([#(#compare),*], #states))
+    }
+}
+
+/// Type of the step's command.
+pub(super) fn command_type(program: &Program) -> Source {
+    if program.has_intervals() {
+        quote!(Intervals)
+    } else {
+        quote!(Legs)
     }
 }
 

@@ -12,12 +12,13 @@ use std::collections::HashSet;
 const PLACEHOLDER: &str = "EmittedDrive";
 
 /// Items of the runtime crate's root.
-const SHARED: [&str; 21] = [
+const SHARED: [&str; 22] = [
     "AngleSensor",
     "Checked",
     "Control",
     "FixedBus",
     "Format",
+    "Intervals",
     "LegState",
     "Legs",
     "Limits",

@@ -1,5 +1,6 @@
 //! The emitted type: its constants, its state, and its implementation of the runtime's traits.
 
+use super::function::command_type;
 use super::function::{SetterCode, StepCode};
 use super::imports::unsettled;
 use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, storage_type};
@@ -141,12 +142,13 @@ impl Types<'_> {
         let speed =
             of(Setter::Speed).map(|function| quote!(impl SpeedLoop for #name { #function }));
         let told = of(Setter::Bus).map(|function| quote!(impl MeasuredBus for #name { #function }));
+        let command = command_type(self.program);
         let StepCode { entries, rotor, .. } = step;
         quote! {
             impl Control for #name {
                 type State = State;
                 type Rotor = #rotor;
-                type Command = Legs;
+                type Command = #command;
                 type Bus = #bus_type;
 
                 const NAME: &'static str = #text;

@@ -19,13 +19,15 @@ pub use words::{EmfUse, Needs, Words};
 
 use crate::blocks::set_point::{Gain, SetPointWords};
 use crate::blocks::{
-    Applied, Bus, Command, Commutation, Corner, Hall, Limited, Lowering, OffLeg, ProportionalShape,
-    Rotor, Sample, Scale, Weakened, advanced_sector, find_sector, proportional_reference,
+    Applied, Bus, Commutation, Corner, Hall, Lowering, OffLeg, ProportionalShape, Rotor, Sample,
+    Scale, StepCommand, Table2, Weakened, advanced_sector, find_sector, proportional_reference,
     quasi_square_reference, sample, sector_of, sense_direction, third_current,
 };
-use crate::ir::{Coefficient, Expr, Memory, Named, Phase, Phases, ProgramBuilder, Told, named};
+use crate::ir::{
+    Coefficient, Expr, Flag, Memory, Named, Phase, Phases, ProgramBuilder, Told, named,
+};
 use crate::scaling::Lowered;
-use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec};
+use crate::spec::{BusSource, EmfSource, LoopOptions, Reference, Spec, ZeroVector};
 
 /// Lowers a controller at a scale: `law` builds its step; `gain` is that from set-point to voltage.
 pub fn lower_with(
@@ -177,11 +179,20 @@ impl<'b> Front<'b> {
 
     /// The reference's angle against the field for the next step, in a stage of its own; nothing without
     /// field weakening.
-    pub fn turned(&self, l: &Lowering<'b>, limited: &Limited<'b>) -> Remembered<'b> {
-        let turned = self
-            .weakened
-            .map(|weakened| weakened.follow(l, limited.cut));
+    pub fn turned(&self, l: &Lowering<'b>, cut: Flag<'b>) -> Remembered<'b> {
+        let turned = self.weakened.map(|weakened| weakened.follow(l, cut));
         turned.into_iter().collect()
+    }
+
+    /// The paper's modulator; none without commutations.
+    pub fn table2(&self, zero: ZeroVector) -> Option<Table2<'b>> {
+        Some(Table2 {
+            bus: self.bus,
+            third: self.third,
+            commutating: self.commutation?.flag,
+            sector: self.sector,
+            zero,
+        })
     }
 }
 
@@ -513,18 +524,18 @@ impl<'b> CurrentLoop<'_, 'b> {
     pub fn remember(
         &self,
         front: &Front<'b>,
-        command: &Command<'b>,
+        command: impl Into<StepCommand<'b>>,
         v_cmd: Option<Phases<'b>>,
         applied: Option<Applied<'b>>,
         mut remembered: Remembered<'b>,
     ) {
-        let words = &front.words;
+        let (words, command) = (&front.words, command.into());
         if let (Some(held), Some(u)) = (&front.held, v_cmd) {
             let left_over = self.left_over(held, u);
             remembered.extend(self.fold(held, left_over));
         }
         remembered.extend(front.of_set_point.iter().copied());
-        if let Some(limit) = words.bus_current {
+        if let (Some(limit), StepCommand::Pulses(command)) = (words.bus_current, &command) {
             remembered.extend(limit.follow(self.l, front.currents, command));
         }
         remembered.extend(front.counts.into_iter().flatten());

@@ -63,7 +63,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             terminals: t_chosen,
             off: pair.off,
         });
-        self.remember(front, &command, v_cmd, applied, vec![]);
+        self.remember(front, command, v_cmd, applied, vec![]);
     }
 }
 

@@ -47,12 +47,12 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
-        let turned = front.turned(l, &limited);
+        let turned = front.turned(l, limited.cut);
         let modulator = Modulator {
             bus: front.bus,
             shifts: None,
         };
         let command = modulator.three(l, &limited, common_mode);
-        step.remember(&front, &command, Some(limited.u), None, turned);
+        step.remember(&front, command, Some(limited.u), None, turned);
     })
 }

@@ -21,12 +21,13 @@ enum LimitEmf<'b> {
 pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
     lower_with(spec, scale, Gain::stiffness(design.k_di), |l, set_point| {
         let pair = options.modulation == Modulation::Pair;
+        let table2 = options.modulation == Modulation::Table2;
         let step = CurrentLoop {
             l,
             options: &options.common,
             design,
             needs: Needs {
-                commutation: pair,
+                commutation: pair || table2,
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
                 memory: 0,
@@ -42,6 +43,19 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 LimitEmf::Known(e) => e,
             }
         });
+        let priority = Priority::of(options.saturation, emf);
+        if let Some(table2) = front.table2(options.zero).filter(|_| table2) {
+            let modulated = table2.modulate(l, priority, u);
+            let remembered = front.turned(l, modulated.cut);
+            step.remember(
+                &front,
+                modulated.command,
+                Some(modulated.u),
+                None,
+                remembered,
+            );
+            return;
+        }
         let common_mode = CommonModeRule::new(l, options.common_mode);
         let hexagon = Hexagon {
             bus: common_mode.reach(l, front.bus),
@@ -49,9 +63,9 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             // A pair needs the centred voltages themselves, a measured bus those before scaling.
             lifts: !pair && common_mode.lifts(front.bus),
         };
-        let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
+        let limited = hexagon.limit(l, priority, u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
-        let turned = front.turned(l, &limited);
+        let turned = front.turned(l, limited.cut);
         let modulator = Modulator {
             bus: front.bus,
             shifts,
@@ -64,6 +78,6 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 (command, Some(applied))
             }
         };
-        step.remember(&front, &command, Some(limited.u), applied, turned);
+        step.remember(&front, command, Some(limited.u), applied, turned);
     })
 }

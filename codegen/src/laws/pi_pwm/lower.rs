@@ -11,7 +11,7 @@ use crate::laws::current_loop::{
     unlimited_voltage,
 };
 use crate::scaling::Lowered;
-use crate::spec::{PiPwmSpec, Spec};
+use crate::spec::{PiModulation, PiPwmSpec, Spec};
 
 /// Documentation of the integrating stage.
 const INTEGRATION: &[&str] = &[
@@ -56,7 +56,7 @@ pub(super) fn lower(
             options: &options.common,
             design,
             needs: Needs {
-                commutation: false,
+                commutation: options.modulation == PiModulation::Table2,
                 off_leg: false,
                 emf,
                 memory: 0,
@@ -123,34 +123,52 @@ impl<'l, 'b> Regulator<'l, 'b> {
             shifts,
         } = self.regulated(step, front, memories, turning);
         let emf = front.e.map(|e| move || e);
+        let priority = Priority::of(self.options.saturation, emf);
+        let integrate = |limited: Phases<'b>| {
+            l.b.stage("integrate", INTEGRATION);
+            let target = forward.map_or(limited, |forward| limited - forward);
+            named! {
+                let distance = target - integral;
+                let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
+            }
+            l.state_phase_volts("integral", integral_now, INTEGRAL);
+            kept(memories, integral_now)
+        };
+        let table2 = front.table2(self.options.zero);
+        if let Some(table2) = table2.filter(|_| self.options.modulation == PiModulation::Table2) {
+            let modulated = table2.modulate(l, priority, u);
+            let remembered = integrate(modulated.u).to_vec();
+            step.remember(
+                front,
+                modulated.command,
+                Some(modulated.u),
+                None,
+                remembered,
+            );
+            return;
+        }
         let common_mode = CommonModeRule::new(l, self.options.common_mode);
         let hexagon = Hexagon {
             bus: common_mode.reach(l, front.bus),
             third: front.third,
             lifts: common_mode.lifts(front.bus),
         };
-        let limited = hexagon.limit(l, Priority::of(self.options.saturation, emf), u);
+        let limited = hexagon.limit(l, priority, u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
-        let mut remembered = front.turned(l, &limited);
-        l.b.stage("integrate", INTEGRATION);
-        let target = forward.map_or(limited.u, |forward| limited.u - forward);
-        named! {
-            let distance = target - integral;
-            let integral_now = (integral + self.k_i * distance).map(|sum| self.held(sum));
-        }
-        l.state_phase_volts("integral", integral_now, INTEGRAL);
+        let mut remembered = front.turned(l, limited.cut);
+        let integrated = integrate(limited.u);
         let modulator = Modulator {
             bus: front.bus,
             shifts,
         };
         let command = modulator.three(l, &limited, common_mode);
-        remembered.extend(kept(memories, integral_now));
+        remembered.extend(integrated);
         remembered.extend(
             turning
                 .into_iter()
                 .flat_map(|turning| turning.kept(front.reference)),
         );
-        step.remember(front, &command, Some(limited.u), None, remembered);
+        step.remember(front, command, Some(limited.u), None, remembered);
     }
 
     /// The voltage that the regulators of the phases ask for.
@@ -248,7 +266,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         };
         let pulses = modulator.pulse_pair(l, sign, line);
         let remembered = vec![(memory, integral_now)];
-        step.remember(front, &pulses.command, None, None, remembered);
+        step.remember(front, pulses.command, None, None, remembered);
     }
 
     /// An integral part within its range.

@@ -4,6 +4,7 @@ use super::angle;
 use super::inverter::Inverter;
 use super::motor::Motor;
 use super::relations;
+use crate::diagnostics::catalogue::Part;
 use crate::diagnostics::{Collector, Location, catalogue, engineering};
 use crate::spec::ast::{Field, Section, Value};
 use crate::spec::controller::common::{
@@ -12,11 +13,8 @@ use crate::spec::controller::common::{
 use crate::spec::controller::{self, KINDS, Kind};
 use crate::spec::reader::Reader;
 use crate::spec::schema;
-use crate::spec::{BusSource, ControllerSpec, RotorSensing, RotorSource};
+use crate::spec::{BusSource, ControllerSpec, RotorSensing, RotorSource, TABLE2};
 use std::f64::consts::TAU;
-
-/// Options that are known but not available in this version.
-const PLANNED_OPTIONS: [&str; 1] = ["zero"];
 
 /// The default controller.
 const DEFAULT_KIND: &str = "pdcc";
@@ -47,12 +45,7 @@ pub(super) fn read(
     let rules = kind.rules().into_iter().chain(controller::rules());
     let reader = Reader::new("controller", section, rules, fallback);
     reader.check_fields(errors, |field, errors| {
-        let planned = PLANNED_OPTIONS.contains(&field.name.as_str());
-        if planned {
-            let at = &field.name_location;
-            errors.push(catalogue::option_planned(at, &field.name));
-        }
-        planned || schema::misplaced("controller", field, errors)
+        schema::misplaced("controller", field, errors)
     });
     let rated_frequency = match (motor.pole_pairs, &motor.rated_speed) {
         (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),
@@ -88,6 +81,12 @@ pub(super) fn read(
         && spec.common().learning.torque
     {
         check_torque_learning(&reader, inverter, spec.common().field_weakening, errors);
+    }
+    if controller
+        .as_ref()
+        .is_some_and(ControllerSpec::has_intervals)
+    {
+        check_intervals(&reader, inverter, errors);
     }
     let learns = reader.field(HALL_LEARNING);
     let learns = learns.is_some_and(|field| field.value.to_string() != "off");
@@ -169,6 +168,42 @@ fn check_torque_learning(
             why,
             errors,
         );
+    }
+}
+
+/// What a command of intervals asks of the board.
+fn check_intervals(reader: &Reader, inverter: &Inverter, errors: &mut Collector) {
+    let modulation = reader.part("modulation", || TABLE2.to_owned());
+    let mut refuse = |cause: &Part, why: &str, remedy: &str| {
+        errors.push(catalogue::intervals_unavailable(
+            &modulation,
+            cause,
+            why,
+            remedy,
+        ));
+    };
+    if let Some(enables) = &inverter.slow_enables {
+        let why = "which this board states that it cannot";
+        let remedy = "choose `modulation: pair`, or `leg_enables: within_period` if a compare event of its timer can load the output enables";
+        refuse(enables, why, remedy);
+    }
+    if let Some(place) = inverter.sensing.low_side.as_ref()
+        && inverter.sensing.reads_off_legs()
+    {
+        let why = "and a sensor in a low leg shows its current only while the leg has been low for a while";
+        refuse(
+            place,
+            why,
+            "choose `modulation: three_phase`, or a board with sensors in the phases",
+        );
+    }
+    for limit in inverter.bus_currents.iter().flatten() {
+        let why = "and the bus current of such a period is not computed";
+        let remedy = format!(
+            "remove `{}`, or choose `modulation: three_phase`",
+            limit.part.field
+        );
+        refuse(&limit.part, why, &remedy);
     }
 }
 

@@ -28,11 +28,13 @@ pub(super) struct Inverter<'a> {
     pub dead_time: Option<Given<'a>>,
     pub adc: Option<Adc>,
     pub sensing: Sensing,
+    /// `leg_enables`, if legs cannot turn on and off within a PWM period.
+    pub slow_enables: Option<Part>,
     pub trip_current: Option<Given<'a>>,
     pub max_current: Option<Given<'a>>,
-    /// `bus_current_limit`, `return_current_limit`.
     /// Voltage at which the board holds its bus.
     pub bus_clamp: Option<Given<'a>>,
+    /// `bus_current_limit`, `return_current_limit`.
     pub bus_currents: [Option<Given<'a>>; 2],
     pub hall_timer_clock: Option<Given<'a>>,
     /// Whether `hall_timer_clock` was written, readable or not.
@@ -96,6 +98,7 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         dead_time: reader.plain_quantity(errors, "dead_time"),
         adc: read_adc(reader, sensing.phases, errors),
         sensing,
+        slow_enables: read_slow_enables(reader, errors),
         trip_current: reader.plain_quantity(errors, "trip_current"),
         max_current: reader.plain_quantity(errors, "max_current"),
         bus_clamp: reader.plain_quantity(errors, "bus_clamp"),
@@ -111,6 +114,14 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Inverter<
         calibration_log2: read_calibration(reader, errors),
         precharge: reader.plain_quantity(errors, "precharge"),
     }
+}
+
+/// The field by which a board says that it cannot turn legs on and off within a PWM period, if it does.
+fn read_slow_enables(reader: &Reader, errors: &mut Collector) -> Option<Part> {
+    const FIELD: &str = "leg_enables";
+    let choices = [("within_period", false), ("per_period", true)];
+    let is_slow = reader.word(errors, FIELD, &choices) == Some(true);
+    is_slow.then(|| reader.part(FIELD, String::new))
 }
 
 /// Fields of a measured bus.

@@ -1,13 +1,13 @@
 //! The current sensors: where they are, and what a count of each is worth.
 
 use crate::diagnostics::Collector;
-use crate::diagnostics::catalogue;
+use crate::diagnostics::catalogue::{self, Part};
 use crate::spec::reader::Reader;
 use crate::spec::sensing::{IN_PHASE, LOW_SIDE, SensingTimes};
 use crate::spec::{CurrentSensing, SensedPhases};
 
 /// What was read of the sensors' place.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Sensing {
     /// The phases that have a sensor.
     pub phases: SensedPhases,
@@ -16,6 +16,8 @@ pub(super) struct Sensing {
     pub sum_samples: Option<u32>,
     /// None together with an error.
     pub place: Option<CurrentSensing>,
+    /// `current_sensing`, if that is `low_side`.
+    pub low_side: Option<Part>,
     /// Second.
     pub minimum_low_time: f64,
 }
@@ -50,13 +52,16 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
         let names = ["current_sum_tolerance", "current_sum_samples"];
         reader.refuse_without(errors, "sensed_phases: abc", &names);
     }
+    let place = read_place(reader, errors);
+    let is_low = matches!(place, Some(CurrentSensing::LowSide(_)));
     Sensing {
         phases,
         sum_tolerance: reader
             .plain_quantity(errors, "current_sum_tolerance")
             .map(|given| given.si),
         sum_samples: reader.integer(errors, "current_sum_samples"),
-        place: read_place(reader, errors),
+        place,
+        low_side: is_low.then(|| reader.part("current_sensing", String::new)),
         minimum_low_time: time(reader, errors, "minimum_low_time").unwrap_or(0.0),
     }
 }

@@ -308,25 +308,39 @@ pub(crate) const FIELD_WEAKENING: &str = "field_weakening";
 
 /// Options of the controllers that may turn a leg off.
 pub(crate) const COMMUTATION: &[Row<LoopOptions>] = &[
-    Row::of(
-        rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
-            .by_default(
-                "0.5 A, at most a quarter of `rated_current`, at least one ADC count",
-                &[("", "less is noise of the ADC, more ends a commutation early")],
-            )
-            .about("Outgoing phase current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off"),
-        |options| Some(number(options.commutation_threshold)),
-    ),
-    Row::of(
-        rule::quantity("commutation_timeout", &[D::Periods, D::Time], 1.0, 255.0, "8 periods")
-            .by_default(
-                "4 L I/(v_bus Ts), 4 to 255 periods",
-                &[("", "four times as long as the bus takes to end the rated current of a phase")],
-            )
-            .about("Commutation time-out, periods or time; only where a leg is turned off"),
-        |options| Some(number(options.commutation_timeout)),
-    ),
+    Row::of(COMMUTATION_ENDS, |options| {
+        Some(number(options.commutation_threshold))
+    }),
+    Row::of(COMMUTATION_TIMEOUT, |options| {
+        Some(number(options.commutation_timeout))
+    }),
 ];
+
+/// The rule of the current at which a commutation ends.
+pub(crate) const COMMUTATION_ENDS: Rule =
+    rule::quantity("commutation_threshold", &[D::Current], 1e-4, 1e3, "0.5 A")
+        .by_default(
+            "0.5 A, at most a quarter of `rated_current`, at least one ADC count",
+            &[("", "less is noise of the ADC, more ends a commutation early")],
+        )
+        .about("Outgoing phase current below which a commutation ends; above one ADC count, below the rated current; only where a leg is turned off");
+
+/// The rule of a commutation's time-out.
+pub(crate) const COMMUTATION_TIMEOUT: Rule = rule::quantity(
+    "commutation_timeout",
+    &[D::Periods, D::Time],
+    1.0,
+    255.0,
+    "8 periods",
+)
+.by_default(
+    "4 L I/(v_bus Ts), 4 to 255 periods",
+    &[(
+        "",
+        "four times as long as the bus takes to end the rated current of a phase",
+    )],
+)
+.about("Commutation time-out, periods or time; only where a leg is turned off");
 
 /// The rule of the saturation, without a default.
 pub(crate) const fn saturation() -> Rule {

@@ -11,6 +11,7 @@ pub(crate) mod p_pwm;
 pub(crate) mod pdcc;
 pub(crate) mod phcc;
 pub(crate) mod pi_pwm;
+mod table2;
 
 pub use common::{
     CommonMode, Discretisation, EmfSource, Learning, LimitRule, LoopOptions, Reference, SpeedLoop,
@@ -21,7 +22,9 @@ pub use off_leg::OffLegModel;
 pub use p_pwm::PPwmSpec;
 pub use pdcc::{Modulation, PdccSpec};
 pub use phcc::{PhccCandidates, PhccSpec, SwitchingTable};
-pub use pi_pwm::PiPwmSpec;
+pub use pi_pwm::{PiModulation, PiPwmSpec};
+pub(crate) use table2::TABLE2;
+pub use table2::ZeroVector;
 
 use super::health::Drive;
 use super::options::{Row, lines};
@@ -64,6 +67,11 @@ pub(crate) trait Options: Into<ControllerSpec> + 'static {
     /// Where the pulses of three legs lie; none where not all three are pulsed in every period.
     fn common_mode(&self) -> Option<CommonMode> {
         None
+    }
+
+    /// Whether legs change their states within a period, so that its command has intervals.
+    fn has_intervals(&self) -> bool {
+        false
     }
 
     /// Greatest excess of phase currents over the reference without a fault, ampere.
@@ -200,6 +208,11 @@ impl ControllerSpec {
     /// Where the pulses of three legs lie; none where not all three are pulsed throughout.
     pub fn common_mode(&self) -> Option<CommonMode> {
         with_options!(self, options => options.common_mode())
+    }
+
+    /// Whether legs change their states within a period, so that its command has intervals.
+    pub fn has_intervals(&self) -> bool {
+        with_options!(self, options => options.has_intervals())
     }
 
     /// The name in a specification.

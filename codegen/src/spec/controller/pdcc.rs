@@ -5,19 +5,20 @@ use super::common::{
     Surroundings, Traits, read_common, read_common_mode, read_dead_time_compensation, refuse,
     refuse_commutation,
 };
+use super::table2::{ZERO, ZeroVector, read_zero, refuse_pulse_options, refuse_turned};
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
-use crate::diagnostics::catalogue;
 use crate::spec::options::{Row, if_on, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
-use crate::spec::words::words;
+use crate::spec::words::{Words as _, words};
 
 words! {
     /// Modulation of the deadbeat voltage.
     pub enum Modulation {
         "three_phase" = ThreePhase: "three duties in every period",
         "pair" = Pair: "three duties in commutation, else the conducting pair only",
+        "table2" = Table2: "the paper's: two neighbouring vectors and a zero vector, three-phase ones in commutation, else pair vectors; a command of three intervals, for boards that turn legs on and off within a period",
     }
 }
 
@@ -26,11 +27,13 @@ words! {
 pub struct PdccSpec {
     /// Modulation.
     pub modulation: Modulation,
+    /// Zero vector outside commutations; of effect with [`Modulation::Table2`] only.
+    pub zero: ZeroVector,
     /// Saturation rule.
     pub saturation: LimitRule,
     /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
-    /// Where the pulses of three legs lie; of no effect with [`Modulation::Pair`].
+    /// Where the pulses of three legs lie; of effect with [`Modulation::ThreePhase`] only.
     pub common_mode: CommonMode,
     /// Options that all controllers share.
     pub common: LoopOptions,
@@ -48,6 +51,9 @@ impl Options for PdccSpec {
                 .about("Modulation of the deadbeat voltage"),
             |options| Some(word(options.modulation)),
         ),
+        Row::of(ZERO, |options| {
+            (options.modulation == Modulation::Table2).then(|| word(options.zero))
+        }),
         Row::of(
             common::saturation().by_default(
                 "`nearest` with `reference: proportional`, `torque_priority` with `quasi_square`",
@@ -72,16 +78,19 @@ impl Options for PdccSpec {
         }),
     ];
 
-    /// The modulation `table2` is known from the literature, but not available.
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
-        let modulation = reader.choice_or_preset(errors, "modulation", &["table2"]);
+        let modulation: Modulation = reader.choice_or_preset(errors, "modulation", &[]);
         let without_sectors = modulation == Modulation::ThreePhase;
         let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
         if without_sectors {
             refuse_commutation(reader, ["modulation", "three_phase"], errors);
         }
         let why = "outside commutation one leg of the pair is low throughout and the third is off";
-        let pair = (!without_sectors).then_some((["modulation", "pair"], why));
+        let pair = (modulation == Modulation::Pair).then_some((["modulation", "pair"], why));
+        let zero = read_zero(reader, modulation.word(), errors);
+        if modulation == Modulation::Table2 {
+            refuse_pulse_options(reader, errors);
+        }
         let common_mode = read_common_mode(reader, surroundings, pair, errors);
         let traits = Traits {
             pulses_three_legs: without_sectors,
@@ -95,30 +104,12 @@ impl Options for PdccSpec {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);
         }
-        let weakens = reader.switch(errors, common::FIELD_WEAKENING) == Some(true);
-        if weakens && modulation == Modulation::Pair && common.reference == Reference::QuasiSquare {
-            let why =
-                "the pair carries a quasi-square current, which cannot turn against the field";
-            refuse(
-                reader,
-                common::FIELD_WEAKENING,
-                ["modulation", "pair"],
-                why,
-                errors,
-            );
-        }
-        if common.reference == Reference::Proportional
-            && modulation == Modulation::Pair
-            && let (Some(reference), Some(cause)) =
-                (reader.field("reference"), reader.field("modulation"))
-        {
-            errors.push(catalogue::proportional_pair(
-                &reference.location,
-                &cause.location,
-            ));
+        if !without_sectors {
+            refuse_turned(reader, common.reference, modulation.word(), errors);
         }
         Some(Self {
             modulation,
+            zero,
             saturation,
             dead_time_compensation,
             common_mode,
@@ -135,15 +126,19 @@ impl Options for PdccSpec {
     }
 
     fn turns_off(&self) -> Option<TurnsOff> {
-        (self.modulation == Modulation::Pair).then_some(TurnsOff {
+        (self.modulation != Modulation::ThreePhase).then_some(TurnsOff {
             option: "modulation",
-            value: "pair",
+            value: self.modulation.word(),
             instead: "modulation: three_phase",
         })
     }
 
     fn common_mode(&self) -> Option<CommonMode> {
         (self.modulation == Modulation::ThreePhase).then_some(self.common_mode)
+    }
+
+    fn has_intervals(&self) -> bool {
+        self.modulation == Modulation::Table2
     }
 
     fn modulates(&self) -> bool {

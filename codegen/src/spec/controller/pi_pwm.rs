@@ -2,22 +2,25 @@
 
 use super::common::{
     self, CommonMode, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, Traits,
-    read_common, read_common_mode, read_dead_time_compensation, refuse, refuse_held,
+    read_common, read_common_mode, read_dead_time_compensation, refuse, refuse_commutation,
+    refuse_held,
 };
+use super::table2::{TABLE2, ZERO, ZeroVector, read_zero, refuse_pulse_options, refuse_turned};
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
 use crate::spec::options::{Row, if_on, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;
-use crate::spec::words::words;
+use crate::spec::words::{Words as _, words};
 use crate::spec::{MotorSpec, Reference, Spec};
 use std::f64::consts::TAU;
 
 words! {
-    /// The only modulation.
-    enum PiModulation {
+    /// Modulation of the regulators' voltage.
+    pub enum PiModulation {
         "three_phase" = ThreePhase: "three duties in every period",
+        "table2" = Table2: "the paper's: two neighbouring vectors and a zero vector, three-phase ones in commutation, else pair vectors; a command of three intervals, for boards that turn legs on and off within a period",
     }
 }
 
@@ -32,11 +35,15 @@ pub struct PiPwmSpec {
     pub feed_forward: bool,
     /// Whether one PI controller holds the current of the conducting pair, instead of one per axis.
     pub six_step: bool,
+    /// Modulation; of no effect with [`Self::six_step`].
+    pub modulation: PiModulation,
+    /// Zero vector outside commutations; of effect with [`PiModulation::Table2`] only.
+    pub zero: ZeroVector,
     /// Saturation rule; of no effect with [`Self::six_step`].
     pub saturation: LimitRule,
     /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
-    /// Where the pulses of three legs lie; of no effect with [`Self::six_step`].
+    /// Where the pulses of three legs lie; of effect with three duties only.
     pub common_mode: CommonMode,
     /// Options that all controllers share.
     pub common: LoopOptions,
@@ -101,8 +108,9 @@ impl Options for PiPwmSpec {
             rule::choice::<PiModulation>("modulation", "three_phase")
                 .preset("three_phase")
                 .about("Modulation"),
-            |_| None,
+            |options| if_table2(options, word(options.modulation)),
         ),
+        Row::of(ZERO, |options| if_table2(options, word(options.zero))),
         Row::of(common::saturation().preset("nearest"), |options| {
             Some(word(options.saturation))
         }),
@@ -112,6 +120,12 @@ impl Options for PiPwmSpec {
         Row::of(common::COMMON_MODE, |options| {
             common::common_mode_line(options.common_mode)
         }),
+        Row::of(common::COMMUTATION_ENDS, |options| {
+            if_table2(options, number(options.common.commutation_threshold))
+        }),
+        Row::of(common::COMMUTATION_TIMEOUT, |options| {
+            if_table2(options, number(options.common.commutation_timeout))
+        }),
     ];
 
     /// Modulations of other controllers are known, but not available.
@@ -120,7 +134,14 @@ impl Options for PiPwmSpec {
         let integral_time = reader.plain_quantity(errors, "integral_time");
         let six_step: bool = reader.choice_or_preset(errors, "six_step", &[]);
         let feed_forward = reader.switch(errors, "feed_forward").unwrap_or(!six_step);
-        let _: Option<PiModulation> = reader.choice(errors, "modulation", &["pair", "table2"]);
+        let modulation: PiModulation = reader.choice_or_preset(errors, "modulation", &["pair"]);
+        let is_table2 = modulation == PiModulation::Table2;
+        let zero = read_zero(reader, modulation.word(), errors);
+        if is_table2 {
+            refuse_pulse_options(reader, errors);
+        } else {
+            refuse_commutation(reader, ["modulation", modulation.word()], errors);
+        }
         let saturation = reader.choice_or_preset(errors, "saturation", &[]);
         if saturation == LimitRule::TorquePriority && !feed_forward {
             let why =
@@ -146,12 +167,15 @@ impl Options for PiPwmSpec {
         let pair = six_step.then_some((["six_step", "on"], why));
         let common_mode = read_common_mode(reader, surroundings, pair, errors);
         let traits = Traits {
-            pulses_three_legs: !six_step,
-            advance_idle: true,
+            pulses_three_legs: !six_step && !is_table2,
+            advance_idle: !is_table2,
             uses_emf: feed_forward,
         };
         let common = read_common(reader, surroundings, traits, errors)?;
         refuse_held(reader, &common, errors);
+        if is_table2 {
+            refuse_turned(reader, common.reference, TABLE2, errors);
+        }
         let time_constant = surroundings.inductance? / surroundings.resistance?;
         let frequency = 1.0 / surroundings.t_s?;
         Some(Self {
@@ -159,6 +183,8 @@ impl Options for PiPwmSpec {
             integral_time: integral_time.map_or(time_constant, |given| given.si),
             feed_forward: feed_forward && !six_step,
             six_step,
+            modulation,
+            zero,
             saturation,
             dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
             common_mode,
@@ -175,6 +201,13 @@ impl Options for PiPwmSpec {
     }
 
     fn turns_off(&self) -> Option<TurnsOff> {
+        if self.has_intervals() {
+            return Some(TurnsOff {
+                option: "modulation",
+                value: TABLE2,
+                instead: "modulation: three_phase",
+            });
+        }
         self.six_step.then_some(TurnsOff {
             option: "six_step",
             value: "on",
@@ -183,12 +216,21 @@ impl Options for PiPwmSpec {
     }
 
     fn common_mode(&self) -> Option<CommonMode> {
-        (!self.six_step).then_some(self.common_mode)
+        (!self.six_step && !self.has_intervals()).then_some(self.common_mode)
+    }
+
+    fn has_intervals(&self) -> bool {
+        self.modulation == PiModulation::Table2
     }
 
     fn modulates(&self) -> bool {
         true
     }
+}
+
+/// A line of the normalised specification that only `modulation: table2` has.
+fn if_table2(options: &PiPwmSpec, line: String) -> Option<String> {
+    options.has_intervals().then_some(line)
 }
 
 /// Refuses options without effect on a six-step drive.
@@ -203,6 +245,11 @@ fn check_six_step(reader: &Reader, errors: &mut Collector) {
             common::FIELD_WEAKENING,
             Some("on"),
             "the current through two windings is quasi-square",
+        ),
+        (
+            "modulation",
+            Some(TABLE2),
+            "one leg of the pair is pulsed in every period",
         ),
         (
             "feed_forward",

@@ -8,6 +8,7 @@ use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Reference, Spec, apply_variant, check, parse_toml};
 
+use hexagen_lab::closed_loop::AnyCommand;
 use hexagen_lab::closed_loop::{
     CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
@@ -69,7 +70,7 @@ fn shapes(theta: f64) -> [f64; 3] {
 }
 
 impl CurrentLoop for Deadbeat {
-    fn step(&mut self, _: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, _: &Sample, truth: &Truth) -> AnyCommand {
         let (a, b) = (1.0 - R * T_S / L, T_S / L);
         let turn = truth.omega_e * T_S;
         let emf = |periods: f64| {
@@ -112,6 +113,7 @@ impl CurrentLoop for Deadbeat {
             t.map(|x| (x / V_BUS * 1800.0).round() as u16),
             [LegState::Pulsed; 3],
         )
+        .into()
     }
 }
 

@@ -18,9 +18,9 @@ use crate::closed_loop::{
 };
 use crate::engine::{Engine, Model, Prepared, SetPoint};
 use crate::plant::{Plant, PlantError, PlantParams, Truth};
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Sample};
 use hexagen_codegen::spec::Reference;
-use hexagen_reference::{BitTrue, Ideal};
+use hexagen_reference::{AnyCommand, BitTrue, Ideal};
 use one_step::{Step, Sums};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -35,7 +35,7 @@ struct SameWords {
 }
 
 impl CurrentLoop for SameWords {
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
         let words = self.samples.next().unwrap_or(*sample);
         let before = self.bit_true.physical_state();
         self.ideal.rebuild_from(&before);
@@ -43,7 +43,7 @@ impl CurrentLoop for SameWords {
         let duties = self.ideal.step(&words);
         let step = Step::of(&before, (&self.bit_true, legs), (&self.ideal, duties));
         self.sums.add(&step, self.timer_period);
-        duties.to_legs(self.timer_period)
+        duties.to_command(self.timer_period)
     }
 
     /// Follows the drive into a trip, too.
@@ -59,7 +59,7 @@ struct Noting<'g> {
 }
 
 impl CurrentLoop for Noting<'_> {
-    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> AnyCommand {
         self.samples.push(*sample);
         self.engine.step(sample, truth)
     }

@@ -2,9 +2,8 @@
 //! and compare values, and their proven bounds.
 
 use crate::engine::Prepared;
-use hexagen::Legs;
 use hexagen_codegen::ir::stated_errors;
-use hexagen_reference::{BitTrue, Duties, Ideal, PhysicalState, Reach, Trace};
+use hexagen_reference::{AnyCommand, BitTrue, Duties, Ideal, PhysicalState, Reach, Trace};
 use serde::Serialize;
 
 /// Number of histogram bins over the proven range; odd, so that zero is in the middle of one.
@@ -126,7 +125,7 @@ impl OneStep {
 pub(super) struct Step<'a> {
     pub before: &'a PhysicalState,
     pub found: Trace,
-    pub legs: Legs,
+    pub legs: AnyCommand,
     pub exact: Trace,
     pub duties: Duties,
 }
@@ -135,7 +134,7 @@ impl<'a> Step<'a> {
     /// Decisions of both models in their last step.
     pub fn of(
         before: &'a PhysicalState,
-        (bit_true, legs): (&BitTrue, Legs),
+        (bit_true, legs): (&BitTrue, AnyCommand),
         (ideal, duties): (&Ideal, Duties),
     ) -> Self {
         Self {
@@ -196,11 +195,11 @@ impl Sums {
         if !found.run {
             return;
         }
-        let rounded = duties.to_legs(period);
+        let rounded = duties.to_command(period);
         self.equal_steps += u64::from(*legs == rounded);
-        let same_vector = legs.state() == rounded.state() && found.vector == exact.vector;
+        let same_vector = legs.states() == rounded.states() && found.vector == exact.vector;
         if same_vector {
-            for (compare, exact) in legs.compare().iter().zip(rounded.compare()) {
+            for (compare, exact) in legs.instants().iter().zip(rounded.instants()) {
                 self.compares_apart = self.compares_apart.max(compare.abs_diff(exact));
             }
         }
@@ -228,11 +227,11 @@ impl Sums {
         }
         for phase in 0..3 {
             let exact = duties.duty[phase] * f64::from(period);
-            let error = (f64::from(legs.compare()[phase]) - exact).abs();
+            let error = (f64::from(legs.instants()[phase]) - exact).abs();
             let largest = &mut self.duty_largest[limited];
             *largest = largest.max(error);
             self.duty_error += error * error;
-            self.equal_compares += u64::from(legs.compare()[phase] == rounded.compare()[phase]);
+            self.equal_compares += u64::from(legs.instants()[phase] == rounded.instants()[phase]);
         }
     }
 

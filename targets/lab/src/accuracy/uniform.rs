@@ -5,8 +5,8 @@ use crate::LabError;
 use crate::closed_loop::{ClosedLoop, CurrentLoop, RunOptions};
 use crate::engine::{Prepared, SetPoint};
 use crate::plant::{Plant, PlantParams, Truth};
-use hexagen::{Legs, Sample};
-use hexagen_reference::{BitTrue, Ideal, Spec, Uniform};
+use hexagen::Sample;
+use hexagen_reference::{AnyCommand, BitTrue, Ideal, Spec, Uniform};
 
 /// Fraction bits of the saturating 16-bit format of SI units that covers all of these motors.
 ///
@@ -36,7 +36,7 @@ struct Shadowed {
 }
 
 impl CurrentLoop for Shadowed {
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
         let before = self.bit_true.physical_state();
         self.ideal.rebuild_from(&before);
         let legs = self.bit_true.step(sample);

@@ -36,7 +36,8 @@ pub use trace::{PeriodRow, Trace, hexagon, quasi_square};
 pub use trip::{Cause, Trip};
 
 use crate::plant::{Observer, Plant, Truth};
-use hexagen::{Control, Drive, Fault, Legs, Sample};
+use hexagen::{Control, Drive, Fault, Sample};
+pub use hexagen_reference::AnyCommand;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -44,7 +45,7 @@ use std::f64::consts::TAU;
 pub trait CurrentLoop {
     /// Reads the sample and returns the command. `truth` is the plant's exact state at the same
     /// instant, for models without ADCs and sensors; real drives ignore it.
-    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs;
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> AnyCommand;
 
     /// The trip, if the controller has a supervisor and it tripped.
     fn fault(&self) -> Option<Fault> {
@@ -52,9 +53,9 @@ pub trait CurrentLoop {
     }
 }
 
-impl<F: FnMut(&Sample, &Truth) -> Legs> CurrentLoop for F {
-    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
-        self(sample, truth)
+impl<F: FnMut(&Sample, &Truth) -> C, C: Into<AnyCommand>> CurrentLoop for F {
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> AnyCommand {
+        self(sample, truth).into()
     }
 }
 
@@ -62,9 +63,9 @@ impl<F: FnMut(&Sample, &Truth) -> Legs> CurrentLoop for F {
 #[derive(Debug)]
 pub struct DriveLoop<C: Control>(pub Drive<C>);
 
-impl<C: Control<Command = Legs>> CurrentLoop for DriveLoop<C> {
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
-        self.0.step(sample)
+impl<C: Control<Command: Into<AnyCommand>>> CurrentLoop for DriveLoop<C> {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
+        self.0.step(sample).into()
     }
 
     fn fault(&self) -> Option<Fault> {
@@ -90,7 +91,7 @@ pub struct Step<'a> {
     /// The plant's state at the sample.
     pub truth: &'a Truth,
     /// The applied command.
-    pub applied: Legs,
+    pub applied: AnyCommand,
     /// The plant at the end of the period.
     pub plant: &'a Plant,
 }
@@ -129,7 +130,7 @@ pub struct ClosedLoop<C> {
     controller: C,
     delay: Delay,
     /// The last command: with a delay that of the period that begins.
-    last: Legs,
+    last: AnyCommand,
     tripped: Option<Trip>,
 }
 
@@ -140,7 +141,7 @@ impl<C: CurrentLoop> ClosedLoop<C> {
             plant,
             controller,
             delay,
-            last: Legs::OFF,
+            last: AnyCommand::default(),
             tripped: None,
         }
     }

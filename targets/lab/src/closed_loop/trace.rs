@@ -4,7 +4,8 @@
 
 use super::{Recorder, RunOptions, Step};
 use crate::plant::{Observer, Segment, Series, TERMS, Terminal, clarke, integral, sector_of};
-use hexagen::{LegState, Legs};
+use hexagen::Command;
+use hexagen_reference::AnyCommand;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use std::io;
@@ -321,16 +322,9 @@ impl Observer for Trace {
 }
 
 /// Whether a command is on the edge of the voltage hexagon of legs that reach so many counts.
-fn saturated(legs: Legs, reach: u16) -> bool {
-    let driven = (0..3).filter(|&x| legs.state()[x] != LegState::Off);
-    let values = driven.map(|x| {
-        if legs.state()[x] == LegState::Pulsed {
-            legs.compare()[x]
-        } else {
-            0
-        }
-    });
-    let (least, most) = values.fold((u16::MAX, 0), |(low, high), c| (low.min(c), high.max(c)));
+fn saturated(command: AnyCommand, reach: u16) -> bool {
+    let driven = command.on().into_iter().flatten();
+    let (least, most) = driven.fold((u16::MAX, 0), |(low, high), c| (low.min(c), high.max(c)));
     most >= least.saturating_add(reach)
 }
 
@@ -350,7 +344,7 @@ impl Recorder for Trace {
             hall: step.sample.hall(),
             adc: [adc_a, adc_b],
             currents: step.truth.currents,
-            compare: step.applied.compare(),
+            compare: step.applied.instants(),
             state: step.applied.state().map(|state| state as u8),
             torque_mean: after.mean_torque,
             v_alpha_mean,
@@ -367,7 +361,7 @@ mod tests {
     use super::*;
     use crate::closed_loop::{ClosedLoop, Delay};
     use crate::plant::{Plant, PlantParams, Truth};
-    use hexagen::Sample;
+    use hexagen::{LegState, Legs, Sample};
 
     fn plant(omega_m: f64) -> Plant {
         Plant::new(

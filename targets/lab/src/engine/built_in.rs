@@ -1,8 +1,8 @@
 //! The motor library and the drives compiled into this program by its build script.
 
-use hexagen::{Control, Drive, Fault, Format, Legs, Sample};
-use hexagen_reference::Stop;
+use hexagen::{Control, Drive, Fault, Format, Sample};
 use hexagen_reference::verify::{Compiled, Subject};
+use hexagen_reference::{AnyCommand, Stop};
 use std::fmt;
 
 /// A motor of the library.
@@ -32,7 +32,7 @@ pub struct BuiltIn {
 }
 
 impl BuiltIn {
-    const fn of<C: Control<Command = Legs>>(motor: &'static str) -> Self {
+    const fn of<C: Control<Command: Into<AnyCommand>>>(motor: &'static str) -> Self {
         Self {
             motor,
             spec: C::SPEC,
@@ -77,7 +77,7 @@ impl fmt::Debug for AnySubject<'_> {
 
 impl Subject for AnySubject<'_> {
     #[inline]
-    fn step(&mut self, sample: &Sample) -> Legs {
+    fn step(&mut self, sample: &Sample) -> AnyCommand {
         self.0.step(sample)
     }
     fn set_current(&mut self, bits: i32) {

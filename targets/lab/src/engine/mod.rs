@@ -22,9 +22,9 @@ pub use verifier::Verifier;
 
 use crate::closed_loop::CurrentLoop;
 use crate::plant::Truth;
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Sample};
 use hexagen_reference::verify::Subject;
-use hexagen_reference::{BitTrue, Ideal};
+use hexagen_reference::{AnyCommand, BitTrue, Ideal};
 use serde::Serialize;
 
 /// Model of a controller.
@@ -168,12 +168,12 @@ impl Engine<'_> {
 
 impl CurrentLoop for Engine<'_> {
     #[inline]
-    fn step(&mut self, sample: &Sample, _: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
         self.tell_bus();
         match &mut self.drive {
             AnyDrive::Fixed(drive) => drive.step(sample),
             AnyDrive::BitTrue(model) => model.step(sample),
-            AnyDrive::Ideal(model) => model.step_legs(sample),
+            AnyDrive::Ideal(model) => model.step_rounded(sample),
         }
     }
 

@@ -47,6 +47,7 @@ impl<'p> Verifier<'p> {
             state_words: drive.state_names().len(),
             has_bus: interface.bus_periods.is_some(),
             has_speed: program.param(Demand::Speed).is_some(),
+            has_intervals: program.has_intervals(),
         };
         let external = compile_c99(&sources, &binding, flags)?;
         Ok(Self {

@@ -7,7 +7,8 @@ use crate::LabError;
 use crate::closed_loop::{ClosedLoop, CurrentLoop, Recorder, RunOptions, Step, Trip};
 use crate::engine::{Engine, Model, PlantOptions, Prepared};
 use crate::plant::{Observer, Plant, PlantError, PlantParams, Segment, Truth};
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Sample};
+use hexagen_reference::AnyCommand;
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -116,7 +117,7 @@ impl<'d> Bench<'d> {
             engine: drive.engine(self.model, set_point),
             signals: Signals::new(&self.plant, place as u64),
             lost: 0,
-            last: Legs::OFF,
+            last: AnyCommand::default(),
         };
         let mut closed = ClosedLoop::new(plant, controller, run.delay);
         if class.is_sound() {
@@ -205,11 +206,11 @@ struct Watched<'g> {
     /// Periods without an interrupt that are to come.
     lost: usize,
     /// The last command.
-    last: Legs,
+    last: AnyCommand,
 }
 
 impl CurrentLoop for Watched<'_> {
-    fn step(&mut self, sample: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, sample: &Sample, truth: &Truth) -> AnyCommand {
         let sample = self.signals.read(sample);
         if self.lost > 0 {
             self.lost -= 1;

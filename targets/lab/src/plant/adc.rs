@@ -2,7 +2,7 @@
 
 use super::gates::Gate;
 use super::{AdcChannel, LowSide};
-use hexagen::{LegState, Legs};
+use hexagen_reference::AnyCommand;
 use std::f64::consts::TAU;
 
 /// The largest count of an ADC with `bits` bits.
@@ -63,16 +63,11 @@ pub(super) fn seen(
 /// command.
 pub(super) fn is_held(
     time: f64,
-    command: Legs,
+    command: AnyCommand,
     leg: usize,
     (timer_period, pwm_period): (u16, f64),
 ) -> bool {
-    let duty = match command.state()[leg] {
-        LegState::Pulsed => {
-            f64::from(command.compare()[leg].min(timer_period)) / f64::from(timer_period)
-        }
-        LegState::Low | LegState::Off => 0.0,
-    };
+    let duty = command.duty(timer_period)[leg].unwrap_or_default();
     0.5 * pwm_period * (1.0 - duty) >= time - ROUNDING
 }
 

@@ -5,7 +5,8 @@
 //! lower switch's time. Each change between the two switches is preceded by the dead time.
 
 use super::Wiring;
-use hexagen::{LegState, Legs};
+use hexagen::{Intervals, LegState, Legs};
+use hexagen_reference::AnyCommand;
 
 /// The conducting switch of a leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,17 +86,35 @@ impl Gates {
     }
 
     /// Starts a period of so many pulses, each of `pwm_period` seconds, with the given command.
-    pub fn begin(&mut self, command: Legs, timer_period: u16, (pwm_period, pulses): (f64, u16)) {
+    pub fn begin(
+        &mut self,
+        command: AnyCommand,
+        timer_period: u16,
+        (pwm_period, pulses): (f64, u16),
+    ) {
         self.requests.clear();
         self.next = 0;
-        for (leg, pulse) in (0..3).flat_map(|leg| (0..pulses).map(move |pulse| (leg, pulse))) {
+        for pulse in 0..pulses {
             let start = f64::from(pulse) * pwm_period;
-            match command.state()[leg] {
+            match command {
+                AnyCommand::Legs(legs) => self.add_pulses(legs, timer_period, (start, pwm_period)),
+                AnyCommand::Intervals(intervals) => {
+                    let count = pwm_period / f64::from(timer_period);
+                    self.add_intervals(intervals, (start, count));
+                }
+            }
+        }
+        self.requests.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    /// Requests of centred pulses in the PWM period that begins at `start`.
+    fn add_pulses(&mut self, legs: Legs, timer_period: u16, (start, pwm_period): (f64, f64)) {
+        for (leg, (state, compare)) in legs.state().into_iter().zip(legs.compare()).enumerate() {
+            match state {
                 LegState::Off => self.requests.push((start, leg, Gate::Off)),
                 LegState::Low => self.requests.push((start, leg, Gate::Lower)),
                 LegState::Pulsed => {
-                    let duty = f64::from(command.compare()[leg].min(timer_period))
-                        / f64::from(timer_period);
+                    let duty = f64::from(compare.min(timer_period)) / f64::from(timer_period);
                     if duty < 1.0 {
                         self.requests.push((start, leg, Gate::Lower));
                     }
@@ -116,7 +135,31 @@ impl Gates {
                 }
             }
         }
-        self.requests.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    /// Requests of intervals in the PWM period that begins at `start`; `count`: seconds of a timer count. An interval
+    /// without length makes none.
+    fn add_intervals(&mut self, intervals: Intervals, (start, count): (f64, f64)) {
+        let [first, second] = intervals.ends();
+        let begins = [0, first, second];
+        let lengths = [first, second.saturating_sub(first), 1];
+        let states = intervals.state();
+        for (interval, begin) in begins
+            .into_iter()
+            .enumerate()
+            .filter(|(x, _)| lengths[*x] > 0)
+        {
+            let is_last = interval == 2;
+            for (leg, state) in states[interval].into_iter().enumerate() {
+                let gate = match state {
+                    LegState::Off => Gate::Off,
+                    LegState::Pulsed if !is_last => Gate::Upper,
+                    LegState::Pulsed | LegState::Low => Gate::Lower,
+                };
+                self.requests
+                    .push((start + f64::from(begin) * count, leg, gate));
+            }
+        }
     }
 
     /// Ends a period: running dead times continue in the next one.
@@ -169,11 +212,14 @@ mod tests {
     use super::*;
 
     /// Times at which each leg's gate changes over the periods' commands.
-    fn changes(dead_time: f64, commands: &[Legs]) -> Vec<(f64, usize, Gate)> {
+    fn changes<C: Into<AnyCommand> + Copy>(
+        dead_time: f64,
+        commands: &[C],
+    ) -> Vec<(f64, usize, Gate)> {
         let mut gates = Gates::new(dead_time, Wiring::default());
         let mut changes = Vec::new();
         for (period, command) in commands.iter().enumerate() {
-            gates.begin(*command, 100, (1.0, 1));
+            gates.begin((*command).into(), 100, (1.0, 1));
             let mut t = 0.0;
             while t < 1.0 {
                 let before = gates.state();
@@ -213,7 +259,7 @@ mod tests {
     #[test]
     fn pulses_are_repeated_within_a_control_period() {
         let mut gates = Gates::new(0.0, Wiring::default());
-        gates.begin(pulsed(50), 100, (0.25, 2));
+        gates.begin(pulsed(50).into(), 100, (0.25, 2));
         let mut seen = vec![];
         let mut t = 0.0;
         while t < 0.5 {
@@ -230,6 +276,46 @@ mod tests {
             (0.4375, Gate::Lower),
         ];
         assert_eq!(seen, want);
+    }
+
+    #[test]
+    fn intervals_have_legs_of_their_own() {
+        use LegState::{Low, Off, Pulsed};
+        let pairs = [[Pulsed, Low, Off], [Pulsed, Off, Low], [Low; 3]];
+        let got = changes(0.0, &[Intervals::new([25, 75], pairs)]);
+        let want = [
+            (0.0, 0, Gate::Upper),
+            (0.0, 1, Gate::Lower),
+            (0.25, 1, Gate::Off),
+            (0.25, 2, Gate::Lower),
+            (0.75, 0, Gate::Lower),
+            (0.75, 1, Gate::Lower),
+        ];
+        assert_eq!(got, want);
+        // An interval of no length has no pulse, and the zero vector none at all.
+        let got = changes(
+            0.0,
+            &[Intervals::new(
+                [0, 50],
+                [[Pulsed; 3], pairs[0], [Pulsed; 3]],
+            )],
+        );
+        let want = [
+            (0.0, 0, Gate::Upper),
+            (0.0, 1, Gate::Lower),
+            (0.5, 0, Gate::Lower),
+            (0.5, 2, Gate::Lower),
+        ];
+        assert_eq!(got, want);
+        // The dead time comes off a leg that changes from one switch to the other.
+        let got = changes(0.125, &[Intervals::new([25, 75], pairs)]);
+        let (_, change) = (&got[..4], &got[4..]);
+        let want = [
+            (0.75, 0, Gate::Off),
+            (0.75, 1, Gate::Lower),
+            (0.875, 0, Gate::Lower),
+        ];
+        assert_eq!(change, want);
     }
 
     #[test]

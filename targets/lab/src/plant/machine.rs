@@ -6,7 +6,8 @@ use super::network::{Network, balance, set_shape};
 use super::segment::{Segment, Series, TERMS, integral};
 use super::short::{Detour, tied};
 use super::{Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
-use hexagen::{Legs, Sample};
+use hexagen::Sample;
+use hexagen_reference::AnyCommand;
 use std::f64::consts::TAU;
 
 /// Minimum steps per period with a free speed, which is constant within a step.
@@ -217,7 +218,8 @@ impl Plant {
 
     /// The controller's sample of the period that begins. `next` is that period's command: a channel
     /// that is sampled later than the first sees the currents under it.
-    pub fn sample(&mut self, next: Legs) -> Sample {
+    pub fn sample(&mut self, next: impl Into<AnyCommand>) -> Sample {
+        let next = next.into();
         let since_edge = (self.time() - self.sensors.last_edge()) / self.params.t_s;
         let ticks = (since_edge * self.params.hall_ticks_per_period).floor();
         let mut counts = [0; 3];
@@ -245,7 +247,7 @@ impl Plant {
     /// short by the next command: the one that flows at its instant, or the one at the turning point, which a
     /// controller wants. Where legs were off until then no current flows, and a sensor that has not settled
     /// shows that, which is right.
-    fn read(&mut self, place: usize, next: Legs) -> (f64, bool) {
+    fn read(&mut self, place: usize, next: AnyCommand) -> (f64, bool) {
         let (instant, phase) = (self.params.adc[place].instant, self.params.sensed[place]);
         let leg = if instant < 0.0 {
             self.early[place]
@@ -288,11 +290,11 @@ impl Plant {
     }
 
     /// Runs one control period under a command.
-    pub fn run_period(&mut self, command: Legs, observer: &mut dyn Observer) {
+    pub fn run_period(&mut self, command: impl Into<AnyCommand>, observer: &mut dyn Observer) {
         let t_s = self.params.t_s;
         let mut integrals = Integrals::default();
         let mut t = 0.0;
-        self.begin(command);
+        self.begin(command.into());
         for place in 0..self.params.adc.len() {
             let instant = t_s + self.params.adc[place].instant;
             if instant < t_s {
@@ -309,7 +311,7 @@ impl Plant {
     }
 
     /// Begins a period with a command.
-    fn begin(&mut self, command: Legs) {
+    fn begin(&mut self, command: AnyCommand) {
         let pulses = (self.params.pwm_period(), self.params.pwm_per_control);
         self.gates.begin(command, self.params.timer_period, pulses);
     }

@@ -73,7 +73,6 @@ impl Plan {
         let own = motor.prepare_for_torque(None)?;
         let mut notes = Vec::new();
         let rows = plan(&motor, design_table(), [true, true], &mut notes);
-        notes.extend(PAPER_NOTES.map(str::to_owned));
         Ok(Self {
             given: PAPER_MOTOR.to_owned(),
             on_board: PlantOptions::default(),
@@ -376,23 +375,6 @@ fn paper_marks() -> Vec<SpeedMark> {
     let bound = SpeedMark::new("bound at 20 A", 119.0);
     SpeedMark::of_paper().into_iter().chain([bound]).collect()
 }
-
-/// Known differences from the design document's table.
-const PAPER_NOTES: [&str; 5] = [
-    "Pair, torque_priority: the expected ripple is that of the nominal prediction, which uses Table 2's vector of a \
-     pair whatever the state of its third leg. Here the prediction includes that leg, clamped by its diode or \
-     floating, and the ripple is lower.",
-    "Estimated EMF: the expected figures are those of an estimate that uses the last period's EMF as that of the \
-     target period, two periods late. Here the estimate is extrapolated with the EMF shape, which gives less ripple and a higher limit.",
-    "FCS-MPC, nominal (literal): the expected figures lie between two readings. With the delay in the prediction, as here, \
-     the torque is also lost, above the limit and with less ripple; without it the \
-     ripple is larger than expected (`hexagen reproduce` shows that reading).",
-    "PI-PWM three_phase: the expected figures are those of the paper's modulation over neighbouring pair vectors \
-     (`modulation=table2`), which is impossible with one state per leg and period. Three pulsed legs hold the torque up to higher speeds.",
-    "PI-PWM six_step: the expected mean and ripple are those of a controller of the largest of the three currents, \
-     (|ia| + |ib| + |ic|)/2. Here the controlled current is the mean of the conducting pair, which includes the incoming phase from the \
-     first period of a commutation on (both: `cargo test -p hexagen-lab --test plant_six_step`; neither has the expected limit).",
-];
 
 #[cfg(test)]
 mod tests {

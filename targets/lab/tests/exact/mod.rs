@@ -10,6 +10,7 @@ use hexagen_codegen::spec::EmfShape;
 use hexagen_lab::closed_loop::{CurrentLoop, RunOptions, STARTS, measure};
 use hexagen_lab::engine::{Prepared, plant_of, run_of};
 use hexagen_lab::plant::{PlantParams, Truth};
+use hexagen_reference::AnyCommand;
 use std::array::from_fn;
 use std::f64::consts::TAU;
 
@@ -59,7 +60,7 @@ impl Exact {
 }
 
 impl CurrentLoop for Exact {
-    fn step(&mut self, _: &Sample, truth: &Truth) -> Legs {
+    fn step(&mut self, _: &Sample, truth: &Truth) -> AnyCommand {
         let r = self.plant.resistance[0];
         let decay = (-r * self.plant.t_s / self.plant.inductance[0]).exp();
         let gain = (1.0 - decay) / r;
@@ -77,7 +78,7 @@ impl CurrentLoop for Exact {
         let counts = v.map(|v| (top * ((v - middle) / v_bus + 0.5).clamp(0.0, 1.0)).round());
         let mean = counts.iter().sum::<f64>() / 3.0;
         self.applied = counts.map(|count| v_bus * (count - mean) / top);
-        Legs::new(counts.map(|count| count as u16), [LegState::Pulsed; 3])
+        Legs::new(counts.map(|count| count as u16), [LegState::Pulsed; 3]).into()
     }
 }
 

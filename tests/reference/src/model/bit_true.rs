@@ -37,11 +37,11 @@ use crate::exact::{
     Coefficient, Shift, Word, all_three, both, floor, floor_weighted, greater, input, lesser, pow2,
     within, word,
 };
-use crate::{EmfSource, Error, FormatTable, Reference, Spec};
+use crate::{AnyCommand, EmfSource, Error, FormatTable, Reference, Spec};
 use bus_current::BusCurrent;
 use constants::{Constants, Scale};
 use fade::Fade;
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Intervals, LegState, Legs, Sample};
 use law::{Command, Inputs, Law};
 use parts::Part;
 use ramp::Ramp;
@@ -333,9 +333,23 @@ impl<W: Word> BitTrue<W> {
         self.state.read(self.k.parts, words);
     }
 
+    /// All legs in one state for the whole period.
+    fn at_rest(&self, state: LegState) -> AnyCommand {
+        if self.variant.has_intervals() {
+            Intervals::all(state).into()
+        } else {
+            Legs::all(state).into()
+        }
+    }
+
+    /// Whether its commands have intervals.
+    pub fn has_intervals(&self) -> bool {
+        self.variant.has_intervals()
+    }
+
     /// One control period: reads the sample, returns the command for the inverter.
     #[inline]
-    pub fn step(&mut self, sample: &Sample) -> Legs {
+    pub fn step(&mut self, sample: &Sample) -> AnyCommand {
         if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
             self.state.supervisor.trip(fault);
         }
@@ -571,8 +585,8 @@ impl<W: Word> BitTrue<W> {
         }
         let command = match verdict.period {
             Period::Control => decision.command,
-            Period::Low => Command::idle(Legs::LOW),
-            Period::Off => Command::idle(Legs::OFF),
+            Period::Low => Command::idle(self.at_rest(LegState::Low)),
+            Period::Off => Command::idle(self.at_rest(LegState::Off)),
         };
         self.state
             .supervisor

@@ -20,9 +20,10 @@ use super::variant::{Variant, allowed_residual, emf_error_limit, emf_limit, stre
 use crate::emf_motion::EmfMotion;
 use crate::emf_shape::THIRD;
 use crate::{
-    BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference, Spec, Switch,
+    AnyCommand, BusSense, CommutationEnd, DiscretePhase, EmfShape, EmfSource, Error, Reference,
+    Spec, Switch,
 };
-use hexagen::{Fault, LegState, Legs, Sample};
+use hexagen::{Fault, Intervals, LegState, Legs, Sample};
 use law::{Command, Inputs, Law};
 use nalgebra::{Vector2, Vector3};
 use speed::SpeedLoop;
@@ -41,28 +42,35 @@ const WEAKENING_STEP: f64 = MOST_TURN / 128.0;
 /// Exact leg commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Duties {
-    /// Fraction of the period during which the upper switch is on, 0 to 1, phases a, b, c.
+    /// Fraction of the period during which the upper switch is on, 0 to 1, phases a, b, c; with intervals the ends of the
+    /// first two and 0.
     pub duty: [f64; 3],
-    /// States of legs a, b, c.
+    /// States of legs a, b, c, in the first interval.
     pub state: [LegState; 3],
+    /// Those in the two later intervals; none of pulses.
+    pub later: Option<[[LegState; 3]; 2]>,
 }
 
 impl Duties {
     const LOW: Self = Self {
         duty: [0.0; 3],
         state: [LegState::Low; 3],
+        later: None,
     };
     const OFF: Self = Self {
         duty: [0.0; 3],
         state: [LegState::Off; 3],
+        later: None,
     };
 
-    /// The nearest timer compare values, ties up.
-    pub fn to_legs(self, timer_period: u16) -> Legs {
-        let compare = self
-            .duty
-            .map(|duty| (duty * f64::from(timer_period) + 0.5).floor() as u16);
-        Legs::new(compare, self.state)
+    /// The nearest timer counts, ties up.
+    pub fn to_command(self, timer_period: u16) -> AnyCommand {
+        let counts = |duty: f64| (duty * f64::from(timer_period) + 0.5).floor() as u16;
+        let [first, second, third] = self.duty.map(counts);
+        match self.later {
+            None => Legs::new([first, second, third], self.state).into(),
+            Some([two, three]) => Intervals::new([first, second], [self.state, two, three]).into(),
+        }
     }
 }
 
@@ -571,10 +579,10 @@ impl Ideal {
         });
         let command = match verdict.period {
             Period::Control => decision.command,
-            Period::Low => Command::idle(Duties::LOW),
-            Period::Off => Command::idle(Duties::OFF),
+            Period::Low => Command::idle(self.at_rest(Duties::LOW)),
+            Period::Off => Command::idle(self.at_rest(Duties::OFF)),
         };
-        let legs = command.duties.to_legs(self.timer_period);
+        let legs = command.duties.to_command(self.timer_period);
         self.state.supervisor.follow_legs(&self.limits, legs);
 
         let weakening = if self.weakening_share.is_some() {
@@ -692,6 +700,14 @@ impl Ideal {
             [-backward, forward]
         } else {
             [-backward.min(left), forward.min(left)]
+        }
+    }
+
+    /// The command of a drive at rest.
+    fn at_rest(&self, duties: Duties) -> Duties {
+        Duties {
+            later: self.variant.has_intervals().then_some([duties.state; 2]),
+            ..duties
         }
     }
 
@@ -865,7 +881,7 @@ impl Ideal {
     }
 
     /// Like [`Self::step`], rounded to timer counts.
-    pub fn step_legs(&mut self, sample: &Sample) -> Legs {
-        self.step(sample).to_legs(self.timer_period)
+    pub fn step_rounded(&mut self, sample: &Sample) -> AnyCommand {
+        self.step(sample).to_command(self.timer_period)
     }
 }

@@ -2,11 +2,12 @@
 //! voltage (its section "Set-point words"). Nothing here is rounded: currents and trip level are
 //! compared in the model's unit.
 
+use crate::AnyCommand;
 use crate::Error;
 use crate::exact::{Word, greater, lesser, pow2, within, word};
 use crate::model::sector::hall_sectors;
 use crate::spec::{Bus, CurrentSensing, Inverter, SensedPhases, Spec};
-use hexagen::{Fault, LegState, Legs};
+use hexagen::{Command, Fault};
 
 /// Being off on purpose, or its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -529,19 +530,15 @@ impl<W: Word> Supervisor<W> {
     }
 
     /// Follows the legs of a period: one that is off, or high for too long, is not read at its end.
-    pub fn follow_legs(&mut self, limits: &Limits, legs: Legs) {
+    pub fn follow_legs(&mut self, limits: &Limits, command: AnyCommand) {
         let Some(third) = limits.third else {
             return;
         };
         let Some(readable) = third.readable else {
             return;
         };
-        let is_read = |x: usize| match legs.state()[x] {
-            LegState::Low => true,
-            LegState::Pulsed => u32::from(legs.compare()[x]) <= readable,
-            LegState::Off => false,
-        };
-        let unread = (0..3).find(|&x| !is_read(x));
+        let is_read = |on: Option<u16>| on.is_some_and(|on| u32::from(on) <= readable);
+        let unread = command.on().into_iter().position(|on| !is_read(on));
         self.unread = Unread(if third.is_delayed {
             [self.unread.0[1], unread]
         } else {

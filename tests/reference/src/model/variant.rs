@@ -22,6 +22,8 @@ pub struct Variant {
     pub held: Switch,
     /// Section 9 of PHCC: the contributions of past periods contain the directions' memory.
     pub wishes_in_due: Switch,
+    /// Section 11: the command has intervals, by the paper's modulator.
+    pub intervals: Switch,
     /// Section 7: a leg may be off, so commands are kept as terminal voltages.
     pub floating: bool,
     /// Section 7: the voltage of the period that starts now is known.
@@ -41,17 +43,24 @@ pub struct Variant {
 }
 
 impl Variant {
+    /// Whether the command has intervals.
+    pub fn has_intervals(&self) -> bool {
+        self.intervals == Switch::On
+    }
+
     pub fn new(spec: &Spec) -> Self {
         let options = spec.loop_options();
         let (mut emf, mut predicts) = (Some(options.emf), true);
         let mut modulated = Switch::Off;
         let mut counts_changes = Switch::Off;
         let mut dead_time = Switch::Off;
+        let mut has_intervals = false;
         let (commutates, floating, saturation) = match &spec.controller {
             Controller::Pdcc(pdcc) => {
                 let pair = pdcc.modulation == Modulation::Pair;
+                has_intervals = pdcc.modulation == Modulation::Table2;
                 dead_time = pdcc.dead_time_compensation;
-                (pair, pair, Some(pdcc.saturation))
+                (pair || has_intervals, pair, Some(pdcc.saturation))
             }
             Controller::FcsMpc(fcs_mpc) => {
                 let pairs = fcs_mpc.candidates != Candidates::ThreePhase;
@@ -78,7 +87,8 @@ impl Variant {
                     emf = None;
                 }
                 let hexagon = pi_pwm.six_step == Switch::Off;
-                (false, false, hexagon.then_some(pi_pwm.saturation))
+                has_intervals = pi_pwm.modulation == Modulation::Table2;
+                (has_intervals, false, hexagon.then_some(pi_pwm.saturation))
             }
             Controller::PPwm(p_pwm) => {
                 predicts = false;
@@ -108,6 +118,11 @@ impl Variant {
                 Switch::Off
             },
             floating,
+            intervals: if has_intervals {
+                Switch::On
+            } else {
+                Switch::Off
+            },
             applied_now: options.delay == 1
                 && (predicts || matches!(emf, Some(EmfSource::Estimated | EmfSource::Observer))),
             modulated,

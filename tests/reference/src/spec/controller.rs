@@ -146,6 +146,9 @@ options! {
     Pdcc {
         /// Modulation of a voltage to leg commands.
         modulation: Modulation,
+        /// Zero vector outside commutations, with intervals.
+        #[serde(default)]
+        zero: Zero,
         /// Saturation rule outside the hexagon.
         saturation: Saturation,
         /// Whether compare values are shifted to compensate the dead time.
@@ -220,6 +223,18 @@ options! {
         feed_forward: Switch,
         /// Whether one controller controls the conducting pair's current.
         six_step: Switch,
+        /// Modulation of a voltage to leg commands.
+        #[serde(default)]
+        modulation: Modulation,
+        /// Zero vector outside commutations, with intervals.
+        #[serde(default)]
+        zero: Zero,
+        /// Outgoing current that ends a commutation, ampere; with intervals.
+        #[serde(default)]
+        commutation_threshold: f64,
+        /// Commutation time-out, periods; with intervals.
+        #[serde(default)]
+        commutation_timeout: u32,
         /// Saturation rule outside the hexagon.
         saturation: Saturation,
         /// Whether compare values are shifted to compensate the dead time.
@@ -336,13 +351,27 @@ pub enum Switch {
 }
 
 /// Modulation of a voltage to leg commands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Modulation {
     /// Three duties in every period.
+    #[default]
     ThreePhase,
     /// Three duties in commutation, else one pulsed leg of the conducting pair.
     Pair,
+    /// Two neighbouring vectors and a zero vector: three-phase ones in commutation, else pair vectors.
+    Table2,
+}
+
+/// Zero vector of intervals outside commutations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Zero {
+    /// All legs low.
+    #[default]
+    AllLow,
+    /// The sector's pair low, the third leg off.
+    PairLow,
 }
 
 /// Saturation rule for voltages outside the hexagon.

@@ -5,9 +5,9 @@
 //! to an earlier state). A tripped drive is reset soon, so that most steps are in control.
 
 use super::toy_motor::ToyMotor;
-use crate::{Bus, BusSense, Error, SensedPhases, Spec, Stop};
+use crate::{AnyCommand, Bus, BusSense, Error, SensedPhases, Spec, Stop};
 use fastrand::Rng;
-use hexagen::{Legs, Sample};
+use hexagen::Sample;
 use std::f64::consts::TAU;
 
 /// Steps of a block.
@@ -74,7 +74,7 @@ pub struct Stimulus {
     left: u32,
     motor: ToyMotor,
     delay: u32,
-    pending: Legs,
+    pending: AnyCommand,
     sector: usize,
     /// Steps until coasting or braking ends; 0: it does neither.
     stopped: u32,
@@ -124,7 +124,7 @@ impl Stimulus {
             left: 1,
             motor: ToyMotor::new(spec)?,
             delay: spec.loop_options().delay,
-            pending: Legs::OFF,
+            pending: AnyCommand::default(),
             sector: 0,
             stopped: 0,
             is_reset: false,
@@ -169,7 +169,7 @@ impl Stimulus {
     /// has an offset at the edge of the tolerance or beyond.
     pub fn restart(&mut self) {
         self.motor.i = [0.0; 2];
-        self.pending = Legs::OFF;
+        self.pending = AnyCommand::default();
         self.start_up = (self.startup_steps + 2).min(START_UP);
         let tolerance = self.offset_tolerance;
         let sensors = self.sensed.phases().len();
@@ -270,12 +270,16 @@ impl Stimulus {
 
     /// Takes the drive's answer to the last sample.
     #[inline]
-    pub fn respond(&mut self, legs: Legs) {
+    pub fn respond(&mut self, command: AnyCommand) {
         if self.stream == Stream::Motor {
-            let applied = if self.delay == 1 { self.pending } else { legs };
+            let applied = if self.delay == 1 {
+                self.pending
+            } else {
+                command
+            };
             self.motor.advance(applied);
         }
-        self.pending = legs;
+        self.pending = command;
     }
 
     /// The calls of firmware after a reset.

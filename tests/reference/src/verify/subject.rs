@@ -1,13 +1,13 @@
 //! Subjects of a comparison with the bit-true model.
 
-use crate::Stop;
+use crate::{AnyCommand, Stop};
 use hexagen::fixed::types::I16F16;
-use hexagen::{Control, Drive, Fault, Legs, Sample};
+use hexagen::{Control, Drive, Fault, Sample};
 
 /// An implementation of a drive's steps: compiled code, an interpreter, a remote target.
 pub trait Subject {
     /// Runs one control period.
-    fn step(&mut self, sample: &Sample) -> Legs;
+    fn step(&mut self, sample: &Sample) -> AnyCommand;
     /// Sets the current set-point, bits of an `I16F16` in ampere.
     fn set_current(&mut self, bits: i32);
     /// Sets the torque set-point, bits of an `I16F16` in newton metres.
@@ -51,10 +51,10 @@ impl<C: Control> Default for Compiled<C> {
     }
 }
 
-impl<C: Control<Command = Legs>> Subject for Compiled<C> {
+impl<C: Control<Command: Into<AnyCommand>>> Subject for Compiled<C> {
     #[inline]
-    fn step(&mut self, sample: &Sample) -> Legs {
-        self.0.step(sample)
+    fn step(&mut self, sample: &Sample) -> AnyCommand {
+        self.0.step(sample).into()
     }
 
     fn set_current(&mut self, bits: i32) {

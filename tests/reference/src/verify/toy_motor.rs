@@ -2,8 +2,8 @@
 //! voltages, a coarse EMF. It only has to reach realistic operating points.
 
 use crate::exact::floor;
-use crate::{DiscretePhase, EmfShape, Error, Spec};
-use hexagen::{LegState, Legs};
+use crate::{AnyCommand, DiscretePhase, EmfShape, Error, Spec};
+use hexagen::Command;
 use std::f64::consts::TAU;
 
 /// Entries of the EMF table, per turn.
@@ -60,9 +60,9 @@ impl ToyMotor {
         (floor(sextants) + 6.0) as usize % 6
     }
 
-    /// One period under the legs' command.
+    /// One period under a command.
     #[inline]
-    pub fn advance(&mut self, legs: Legs) {
+    pub fn advance(&mut self, command: AnyCommand) {
         self.speed += (self.speed_target - self.speed) / 64.0;
         self.turn += self.speed;
         self.turn -= floor(self.turn);
@@ -70,18 +70,20 @@ impl ToyMotor {
         let (e_a, e_b) = (at(self.turn), at(self.turn + 2.0 / 3.0));
         let e = [e_a, e_b, -(e_a + e_b)];
         let i = [self.i[0], self.i[1], -(self.i[0] + self.i[1])];
+        let on = command.on();
         let mut v = [0.0; 3];
         for phase in 0..3 {
-            v[phase] = match legs.state()[phase] {
-                LegState::Pulsed => {
-                    f64::from(legs.compare()[phase]) / self.timer_period * self.v_bus
-                }
-                LegState::Low => 0.0,
+            v[phase] = match on[phase] {
+                Some(on) => f64::from(on) / self.timer_period * self.v_bus,
                 // A diode against the current; without current about the voltage that makes none.
-                LegState::Off if i[phase].abs() > self.phase.b * self.v_bus / 4.0 => {
-                    if i[phase] > 0.0 { 0.0 } else { self.v_bus }
+                None if i[phase].abs() > self.phase.b * self.v_bus / 4.0 => {
+                    if i[phase] > 0.0 {
+                        0.0
+                    } else {
+                        self.v_bus
+                    }
                 }
-                LegState::Off => {
+                None => {
                     (self.v_bus / 2.0 + e[phase] - i[phase] / self.phase.b).clamp(0.0, self.v_bus)
                 }
             };

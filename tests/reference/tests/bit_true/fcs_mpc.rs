@@ -194,7 +194,7 @@ fn ties_choose_the_first_candidate() {
                 let expected = first.min(first % 6 + 1);
                 assert_eq!(bit_true.trace().vector, expected, "{}", variant.name);
                 assert_eq!(ideal.trace().vector, expected, "{}", variant.name);
-                assert_eq!(legs, duties.to_legs(inverter.timer_period as u16));
+                assert_eq!(legs, duties.to_command(inverter.timer_period as u16));
                 tried += 1;
             }
         }

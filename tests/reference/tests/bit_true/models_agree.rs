@@ -2,10 +2,11 @@
 //! except for rounding, in every variant.
 
 use crate::variants::{self, Variant};
-use hexagen::{LegState, Sample};
+use hexagen::{Command, LegState, Sample};
 use hexagen_reference::verify::{Action, Context, Stimulus};
 use hexagen_reference::{
-    BitTrue, Controller, DiscretePhase, Ideal, Mode, OffLeg, PhysicalState, Switch, Trace, sixths,
+    AnyCommand, BitTrue, Controller, DiscretePhase, Duties, Ideal, Mode, OffLeg, PhysicalState,
+    Switch, Trace, sixths,
 };
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, PI, TAU};
 
@@ -72,9 +73,9 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
         let before = bit_true.physical_state();
         let tie = floated_at_threshold(variant, &before);
         ideal.rebuild_from(&before);
-        let legs = bit_true.step(&sample);
+        let command = bit_true.step(&sample);
         let duties = ideal.step(&sample);
-        stimulus.respond(legs);
+        stimulus.respond(command);
         let states = [bit_true.physical_state(), ideal.physical_state()];
         let [of_words, exact] = states.map(|state| state.torque_ratio());
         assert!(
@@ -94,19 +95,52 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
             (&bit_true, &ideal),
             &mut worst,
             |phase| {
-                let exact = duties.duty[phase] * f64::from(variant.spec.inverter.timer_period);
-                let counts = f64::from(legs.compare()[phase]);
-                // A pulse of no length leaves a leg low: the lower of two low legs is either.
-                let state = |state, counts: f64| match state {
-                    LegState::Pulsed if counts < 0.5 => LegState::Low,
-                    state => state,
-                };
-                let same = state(legs.state()[phase], counts) == state(duties.state[phase], exact);
-                (counts - exact, same)
+                let period = f64::from(variant.spec.inverter.timer_period);
+                let [on, off] = times_of(command, phase, period);
+                let [exact_on, exact_off] = exact_times(&duties, phase).map(|share| share * period);
+                (on - exact_on, (off - exact_off).abs() < 0.02 * period)
             },
         );
     }
     worst
+}
+
+/// Counts for which a leg is on, and off. Which vector has no length, and which of two low legs has a pulse of no length,
+/// makes no difference.
+fn times_of(command: AnyCommand, leg: usize, period: f64) -> [f64; 2] {
+    let on = command.on()[leg].map_or(0.0, f64::from);
+    let off = match command {
+        AnyCommand::Legs(legs) if legs.state()[leg] == LegState::Off => period,
+        AnyCommand::Legs(_) => 0.0,
+        AnyCommand::Intervals(intervals) => {
+            let ends = intervals.ends().map(f64::from);
+            time_off(intervals.state().map(|legs| legs[leg]), ends, period)
+        }
+    };
+    [on, off]
+}
+
+/// The same of the ideal model, shares of the period.
+fn exact_times(duties: &Duties, leg: usize) -> [f64; 2] {
+    let Some([second, third]) = duties.later else {
+        let is_off = duties.state[leg] == LegState::Off;
+        return [duties.duty[leg], f64::from(u8::from(is_off))];
+    };
+    let [first_end, second_end, _] = duties.duty;
+    let states = [duties.state, second, third].map(|legs| legs[leg]);
+    let lengths = [first_end, second_end - first_end];
+    let on = states.iter().zip(lengths);
+    let on = on.filter(|(state, _)| **state == LegState::Pulsed);
+    let off = time_off(states, [first_end, second_end], 1.0);
+    [on.map(|(_, length)| length).sum(), off]
+}
+
+/// Time for which a leg with these states in three intervals is off.
+fn time_off(states: [LegState; 3], [first, second]: [f64; 2], period: f64) -> f64 {
+    let lengths = [first, second - first, period - second];
+    let off = states.iter().zip(lengths);
+    let off = off.filter(|(state, _)| **state == LegState::Off);
+    off.map(|(_, length)| length).sum()
 }
 
 fn compare(
@@ -259,6 +293,7 @@ fn distance(u: [f64; 2], v: [f64; 2]) -> f64 {
 fn in_every_variant() {
     let mut variants = variants::all();
     variants.extend(variants::others());
+    variants.extend(variants::of_table2());
     variants.extend(variants::limited());
     let weakened = variants::weakened();
     assert!(weakened.len() > 20, "{}", weakened.len());

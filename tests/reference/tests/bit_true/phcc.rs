@@ -108,7 +108,7 @@ fn chosen(variant: &Variant, sector: usize, past: Past, current: f64, wishes: [f
     assert_eq!(bit_true.mode(), Mode::Run);
     let entering = matches!(past, Past::Entering(_));
     assert_eq!(bit_true.trace().commutating, entering);
-    assert_eq!(legs, duties.to_legs(spec.inverter.timer_period as u16));
+    assert_eq!(legs, duties.to_command(spec.inverter.timer_period as u16));
     assert_eq!(bit_true.trace().vector, ideal.trace().vector);
     ideal.trace().vector
 }

@@ -90,7 +90,7 @@ fn follows_a_textbook_controller() {
                 let count = duty * f64::from(inverter.timer_period);
                 assert!((duties.duty[x] - duty).abs() < 1e-9, "{}", variant.name);
                 assert!(
-                    (f64::from(legs.compare()[x]) - count).abs() < 1.5,
+                    (f64::from(legs.instants()[x]) - count).abs() < 1.5,
                     "{}",
                     variant.name
                 );

@@ -225,6 +225,52 @@ word = 32
     variants
 }
 
+/// The paper's modulator with both controllers that have it, on both motors.
+pub fn of_table2() -> Vec<Variant> {
+    let mut variants = Vec::new();
+    for (motor, text) in MOTORS {
+        for index in 0..48 {
+            let kind = ["pdcc", "pi-pwm"][index % 2];
+            let saturation = ["keep_angle", "nearest", "torque_priority"][index / 2 % 3];
+            let zero = ["all_low", "pair_low"][index / 6 % 2];
+            let delay = [1, 0][index / 12 % 2];
+            let bus = ["fixed", "measured"][index / 24 % 2];
+            // The other options vary out of step with these.
+            let emf = ["estimated", "model"][index % 5 % 2];
+            let advance = [0.0, 1.5][index % 7 % 2];
+            let capture = ["sampled", "timer"][index % 11 % 2];
+            let own = if kind == "pdcc" {
+                ""
+            } else {
+                "feed_forward = \"on\"\nsix_step = \"off\"\nbandwidth = 1000.0\nintegral_time = 0.0016"
+            };
+            let options = format!(
+                r#"
+kind = "{kind}"
+modulation = "table2"
+zero = "{zero}"
+saturation = "{saturation}"
+emf = "{emf}"
+emf_filter = 1.0
+reference = "quasi_square"
+advance = {advance:?}
+delay = {delay}
+discretisation = "exact"
+word = 32
+commutation_threshold = 0.1
+commutation_timeout = 8
+{own}
+"#
+            );
+            let name = format!(
+                "{motor}: {kind} table2 {zero} {saturation} {emf} advance {advance} delay {delay} {capture} {bus}"
+            );
+            variants.push(variant(name, text, capture, bus, &options));
+        }
+    }
+    variants
+}
+
 /// A motor's text with the rest of its inverter and a controller.
 fn variant(name: String, motor: &str, capture: &str, bus: &str, controller: &str) -> Variant {
     let ticks = if capture == "timer" { 50 } else { 2 };
@@ -459,10 +505,11 @@ pub fn table(variant: &Variant) -> FormatTable {
 /// Whether the variant tracks commutations.
 pub fn commutates(variant: &Variant) -> bool {
     match &variant.spec.controller {
-        Controller::Pdcc(pdcc) => pdcc.modulation == Modulation::Pair,
+        Controller::Pdcc(pdcc) => pdcc.modulation != Modulation::ThreePhase,
         Controller::FcsMpc(fcs_mpc) => fcs_mpc.candidates != Candidates::ThreePhase,
         Controller::Phcc(_) => true,
-        Controller::PiPwm(_) | Controller::PPwm(_) => false,
+        Controller::PiPwm(pi_pwm) => pi_pwm.modulation == Modulation::Table2,
+        Controller::PPwm(_) => false,
     }
 }
 

@@ -2,9 +2,9 @@
 //! bit.
 
 use crate::variants::{self, Variant};
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Sample};
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
-use hexagen_reference::{BitTrue, Bus, Controller, FormatTable, Spec, Stop};
+use hexagen_reference::{AnyCommand, BitTrue, Bus, Controller, FormatTable, Spec, Stop};
 
 /// The model as a drive, with an optional fault.
 struct Mirror {
@@ -14,7 +14,7 @@ struct Mirror {
 }
 
 impl Subject for Mirror {
-    fn step(&mut self, sample: &Sample) -> Legs {
+    fn step(&mut self, sample: &Sample) -> AnyCommand {
         self.model.step(sample)
     }
     fn set_current(&mut self, bits: i32) {

@@ -156,6 +156,8 @@ pub struct Binding {
     pub has_bus: bool,
     /// Whether it has a speed loop.
     pub has_speed: bool,
+    /// Whether its command has intervals.
+    pub has_intervals: bool,
 }
 
 impl Binding {
@@ -165,12 +167,13 @@ impl Binding {
             state_words,
             has_bus,
             has_speed,
+            has_intervals,
         } = *self;
-        let [bus, speed] = [has_bus, has_speed].map(i32::from);
+        let [bus, speed, intervals] = [has_bus, has_speed, has_intervals].map(i32::from);
         format!(
             "#include \"{name}.h\"\ntypedef {name} drive_type;\n\
              #define CALL(function) {name}_##function\n#define STATE_WORDS {state_words}\n\
-             #define HAS_BUS {bus}\n#define HAS_SPEED {speed}\n"
+             #define HAS_BUS {bus}\n#define HAS_SPEED {speed}\n#define HAS_INTERVALS {intervals}\n"
         )
     }
 }

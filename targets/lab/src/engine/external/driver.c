@@ -31,6 +31,33 @@ static void answer(int count, uint32_t number)
     }
 }
 
+#if HAS_INTERVALS
+typedef hexagen_intervals command_type;
+
+static void answer_command(const hexagen_intervals *intervals)
+{
+    answer(2, intervals->end[0]);
+    answer(2, intervals->end[1]);
+    answer(2, 0U);
+    for (int interval = 0; interval < 3; interval++) {
+        answer(2, intervals->states[interval]);
+    }
+}
+#else
+typedef hexagen_legs command_type;
+
+static void answer_command(const hexagen_legs *legs)
+{
+    uint32_t states = 0;
+    for (int leg = 0; leg < 3; leg++) {
+        answer(2, legs->compare[leg]);
+        states |= (uint32_t)legs->state[leg] << (2 * leg);
+    }
+    answer(2, states);
+    answer(4, 0U);
+}
+#endif
+
 static void step(drive_type *drive)
 {
     const uint16_t adc_a = (uint16_t)bytes(2);
@@ -44,14 +71,9 @@ static void step(drive_type *drive)
         ? hexagen_with_ticks(hexagen_with_hall(adc_a, adc_b, hall), hall_ticks)
         : hexagen_with_angle(adc_a, adc_b, angle);
     const hexagen_sample sample = hexagen_with_third(rotor, adc_c);
-    const hexagen_legs legs = CALL(step)(drive, &sample);
+    const command_type command = CALL(step)(drive, &sample);
     const hexagen_status status = CALL(status)(drive);
-    for (int leg = 0; leg < 3; leg++) {
-        answer(2, legs.compare[leg]);
-    }
-    for (int leg = 0; leg < 3; leg++) {
-        answer(1, (uint32_t)legs.state[leg]);
-    }
+    answer_command(&command);
     answer(1, (uint32_t)status.fault);
     answer(1, status.bus_is_stale ? 1U : 0U);
     int32_t words[STATE_WORDS];

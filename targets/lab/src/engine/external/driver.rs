@@ -9,7 +9,7 @@ mod drive {
 }
 
 use hexagen::fixed::types::I16F16;
-use hexagen::{Drive, Sample};
+use hexagen::{Command, Drive, Sample};
 use std::io::{Read, Write};
 
 struct Calls<'a>(&'a [u8]);
@@ -55,11 +55,10 @@ fn main() {
                     } else {
                         Sample::with_angle(adc, angle)
                     };
-                    let legs = drive.step(&sample.third_current(adc_c));
-                    for compare in legs.compare() {
-                        answers.extend(compare.to_le_bytes());
+                    let command = drive.step(&sample.third_current(adc_c));
+                    for word in command.words() {
+                        answers.extend(word.to_le_bytes());
                     }
-                    answers.extend(legs.state().map(|state| state as u8));
                     let status = drive.status();
                     answers.push(status.fault.map_or(0, |fault| fault as u8));
                     answers.push(u8::from(status.bus_is_stale));

@@ -4,9 +4,9 @@
 //! program reads a whole batch before it answers, and answers one record per step. `driver.rs` is
 //! the other end.
 
-use super::External;
-use hexagen::{Fault, LegState, Legs, Sample};
-use hexagen_reference::Stop;
+use super::{External, Terms};
+use hexagen::{Command as _, Fault, Intervals, Legs, Sample};
+use hexagen_reference::{AnyCommand, Stop};
 use std::io::{self, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
@@ -46,6 +46,8 @@ pub struct Link {
     input: Option<ChildStdin>,
     output: ChildStdout,
     state_words: usize,
+    /// Whether commands have intervals.
+    has_intervals: bool,
     calls: Vec<u8>,
     expected: Vec<u8>,
     found: Vec<u8>,
@@ -59,7 +61,7 @@ pub struct Link {
 
 impl Link {
     /// Starts the program.
-    pub fn open(external: &External, state_words: usize) -> Result<Self, LinkError> {
+    pub fn open(external: &External, terms: &Terms<'_>) -> Result<Self, LinkError> {
         let mut child = Command::new(external.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -72,7 +74,8 @@ impl Link {
             child,
             input: Some(input),
             output,
-            state_words,
+            state_words: terms.state_names.len(),
+            has_intervals: terms.model.has_intervals(),
             calls: vec![],
             expected: vec![],
             found: vec![],
@@ -83,10 +86,10 @@ impl Link {
         })
     }
 
-    /// Bytes of a step's answer: compare values, leg states, fault, staleness of the bus voltage,
-    /// state words.
+    /// Bytes of a step's answer: words of the command, fault, staleness of the bus voltage, state
+    /// words.
     fn answer_length(&self) -> usize {
-        6 + 3 + 1 + 1 + 4 * self.state_words
+        12 + 1 + 1 + 4 * self.state_words
     }
 
     /// Adds a call to the batch.
@@ -139,18 +142,13 @@ impl Link {
     pub fn step(
         &mut self,
         sample: Sample,
-        legs: Legs,
+        command: AnyCommand,
         (fault, bus_is_stale): (Option<Fault>, bool),
         words: &[i32],
     ) {
         self.send_step(sample);
         let expected = &mut self.expected;
-        expected.extend(
-            legs.compare()
-                .iter()
-                .flat_map(|compare| compare.to_le_bytes()),
-        );
-        expected.extend(legs.state().map(|state| state as u8));
+        expected.extend(command.words().into_iter().flat_map(u16::to_le_bytes));
         let fault = fault.map_or(0, |fault| fault as u8);
         expected.extend([fault, u8::from(bus_is_stale)]);
         expected.extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -164,7 +162,7 @@ impl Link {
         &mut self,
         sample: Sample,
         words: &mut [i32],
-    ) -> Option<(Legs, Option<Fault>, bool)> {
+    ) -> Option<(AnyCommand, Option<Fault>, bool)> {
         self.send_step(sample);
         self.exchange();
         self.done += self.pending;
@@ -173,21 +171,20 @@ impl Link {
             return None;
         }
         let answer = &self.found;
-        let compare = |phase: usize| u16::from_le_bytes([answer[2 * phase], answer[2 * phase + 1]]);
-        let state = |leg: usize| match answer[6 + leg] {
-            0 => LegState::Pulsed,
-            1 => LegState::Low,
-            _ => LegState::Off,
-        };
-        for (word, bytes) in words.iter_mut().zip(answer[11..].chunks_exact(4)) {
+        let half = |place: usize| u16::from_le_bytes([answer[2 * place], answer[2 * place + 1]]);
+        for (word, bytes) in words.iter_mut().zip(answer[14..].chunks_exact(4)) {
             *word = i32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         }
-        let legs = Legs::new(
-            [compare(0), compare(1), compare(2)],
-            [state(0), state(1), state(2)],
-        );
-        let fault = Fault::from_number(answer[9].into());
-        Some((legs, fault, answer[10] != 0))
+        let instants = [half(0), half(1)];
+        let command = if self.has_intervals {
+            Intervals::of_states(instants, [half(3), half(4), half(5)]).into()
+        } else {
+            let bits = [half(0), half(1), half(2), half(3)];
+            let bits = bits.into_iter().rev();
+            Legs::from_bits(bits.fold(0, |bits, half| bits << 16 | u64::from(half))).into()
+        };
+        let fault = Fault::from_number(answer[12].into());
+        Some((command, fault, answer[13] != 0))
     }
 
     /// Sends the batch and reads its answers into `found`.

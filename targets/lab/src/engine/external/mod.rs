@@ -11,7 +11,7 @@ pub use build::{Binding, BuildError, External, compile, compile_c99};
 
 use hexagen::{Fault, Format, LegState, Legs, Sample};
 use hexagen_reference::verify::{Report, Subject, VerifyError, verify_subject};
-use hexagen_reference::{BitTrue, Stop};
+use hexagen_reference::{AnyCommand, BitTrue, Stop};
 use link::{Call, Link, LinkError};
 use std::cell::RefCell;
 
@@ -67,12 +67,12 @@ pub(super) fn verify(
             seed,
         )
     };
-    let link = RefCell::new(Link::open(external, terms.state_names.len())?);
+    let link = RefCell::new(Link::open(external, &terms)?);
     let report = run(steps, &link, true)?;
     let Some(step) = link.into_inner().close()? else {
         return Ok(report);
     };
-    let link = RefCell::new(Link::open(external, terms.state_names.len())?);
+    let link = RefCell::new(Link::open(external, &terms)?);
     run(step + 1, &link, false)?;
     link.into_inner().close()?;
     Err(ExternalError::Batch(step))
@@ -98,26 +98,26 @@ impl Remote<'_> {
 }
 
 impl Subject for Remote<'_> {
-    fn step(&mut self, sample: &Sample) -> Legs {
+    fn step(&mut self, sample: &Sample) -> AnyCommand {
         let mut link = self.link.borrow_mut();
         match &mut self.model {
             Some(model) => {
-                let legs = model.step(sample);
+                let command = model.step(sample);
                 model.state_words(&mut self.words);
                 self.fault = model.fault();
                 self.bus_is_stale = model.bus_is_stale();
                 let status = (self.fault, self.bus_is_stale);
-                link.step(*sample, legs, status, &self.words);
-                legs
+                link.step(*sample, command, status, &self.words);
+                command
             }
             None => match link.step_and_wait(*sample, &mut self.words) {
-                Some((legs, fault, bus_is_stale)) => {
+                Some((command, fault, bus_is_stale)) => {
                     self.fault = fault;
                     self.bus_is_stale = bus_is_stale;
-                    legs
+                    command
                 }
                 // After a broken pipe the answer is invalid; the link reports the cause.
-                None => Legs::new([u16::MAX; 3], [LegState::Off; 3]),
+                None => Legs::new([u16::MAX; 3], [LegState::Off; 3]).into(),
             },
         }
     }

@@ -7,8 +7,8 @@ use crate::exact::{
     round_half_up, within, word,
 };
 use crate::model::variant::reference_gain;
-use crate::{Error, Spec};
-use hexagen::{LegState, Legs};
+use crate::{AnyCommand, Error, Spec};
+use hexagen::LegState;
 
 /// Constants of the limits.
 #[derive(Clone, Debug)]
@@ -68,8 +68,8 @@ impl<W: Word> BusCurrent<W> {
 
     /// The words behind the period that begins with the currents `i`.
     #[inline]
-    pub fn follow(&self, k: &Constants<W>, state: &mut State<W>, i: [W; 3], legs: Legs) {
-        let (compare, leg) = (legs.compare(), legs.state());
+    pub fn follow(&self, k: &Constants<W>, state: &mut State<W>, i: [W; 3], legs: AnyCommand) {
+        let (compare, leg) = (legs.instants(), legs.state());
         let duty = all_three(|x| match leg[x] {
             LegState::Off if i[x] < 0.0 => word(k.timer_period),
             LegState::Off => word(0.0),

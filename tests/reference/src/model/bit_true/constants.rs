@@ -396,6 +396,7 @@ impl<W: Word> Constants<W> {
             k_third: scale.only_if(
                 (floating && variant.applied())
                     || variant.modulated == Switch::On
+                    || variant.has_intervals()
                     || saturation.is_some_and(|rule| rule != Saturation::KeepAngle)
                     || spec.spares_highest()?,
                 "k_third",

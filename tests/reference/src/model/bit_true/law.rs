@@ -6,6 +6,7 @@ mod deadbeat;
 mod divided;
 mod fcs_mpc;
 mod held;
+mod intervals;
 mod p_pwm;
 mod pdcc;
 pub mod phcc;
@@ -20,8 +21,7 @@ use super::constants::{Constants, Scale};
 use crate::exact::{Coefficient, Word, word};
 use crate::model::Reach;
 use crate::model::trace::Past;
-use crate::{Controller, Error, Spec};
-use hexagen::Legs;
+use crate::{AnyCommand, Controller, Error, Spec};
 
 /// Results of the common sections. Pairs are phases a, b.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +76,7 @@ pub struct Decision<W> {
 /// A command to the inverter and its terminal voltages.
 #[derive(Clone, Copy, Debug)]
 pub struct Command<W> {
-    pub legs: Legs,
+    pub legs: AnyCommand,
     /// `t_a_cmd` to `t_c_cmd`, if a leg may be off.
     pub terminal: [W; 3],
     /// `off_cmd`: 0 none, 1 to 3 leg a, b, c.
@@ -85,9 +85,9 @@ pub struct Command<W> {
 
 impl<W: Word> Command<W> {
     /// All legs in the same state, without any voltage.
-    pub fn idle(legs: Legs) -> Self {
+    pub fn idle(legs: impl Into<AnyCommand>) -> Self {
         Self {
-            legs,
+            legs: legs.into(),
             terminal: [word(0.0); 3],
             off: 0,
         }

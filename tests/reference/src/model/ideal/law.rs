@@ -6,6 +6,7 @@ mod deadbeat;
 mod divided;
 mod fcs_mpc;
 mod held;
+mod intervals;
 mod off_leg;
 mod p_pwm;
 mod pdcc;

@@ -118,7 +118,7 @@ fn about(method: Method, reading: Reading) -> &'static str {
             "Predicts with the applied vector, the off leg clamped by its diode or floating; EMF from the motor's EMF shape."
         }
         (Method::Pdcc, Reading::Literal) => {
-            "Voltage scaled to the hexagon; EMF from the last period. The paper's modulation over neighbouring pair vectors, (15), is impossible with one state per leg and period: all three legs are pulsed."
+            "Voltage scaled to the hexagon; EMF from the last period. All three legs are pulsed; the paper's modulation over neighbouring pair vectors, (15), is `modulation=table2`, whose steps are not counted."
         }
         (Method::Pdcc, Reading::Corrected) => {
             "At the voltage limit keeps the component along the EMF; commutates two periods ahead; EMF from the motor's EMF shape."
@@ -130,7 +130,7 @@ fn about(method: Method, reading: Reading) -> &'static str {
             "Switching table derived from the vectors' geometry; EMF from the motor's shape."
         }
         (Method::PiPwm, Reading::Literal) => {
-            "800 Hz, integral time 0.5 ms, no EMF feed-forward. (15) is impossible, as with PDCC: all three legs are pulsed."
+            "800 Hz, integral time 0.5 ms, no EMF feed-forward. All three legs are pulsed, as with PDCC."
         }
         (Method::PiPwm, Reading::Corrected) => {
             "1 kHz, integral time L/R, feed-forward of the motor's EMF."

@@ -63,7 +63,8 @@ pub fn command<W: Word>(
                     LegState::Low
                 }
             }),
-        ),
+        )
+        .into(),
         terminal,
         off: off.map_or(0, |leg| leg + 1),
     }

@@ -3,6 +3,7 @@
 use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
 use super::deadbeat::Form;
+use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
 use crate::exact::Word;
 use crate::model::bit_true::constants::Scale;
@@ -17,6 +18,7 @@ pub struct Pdcc<W> {
     dead_time: DeadTime<W>,
     common_mode: CommonModeRule<W>,
     of_pair: CommonModeRule<W>,
+    table2: Option<Table2<W>>,
 }
 
 impl<W: Word> Pdcc<W> {
@@ -28,6 +30,9 @@ impl<W: Word> Pdcc<W> {
             dead_time: DeadTime::new(spec, scale)?,
             common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
             of_pair: CommonModeRule::of_pair(spec, options.modulation == Modulation::Pair, scale)?,
+            table2: (options.modulation == Modulation::Table2)
+                .then(|| Table2::new(spec, (options.saturation, options.zero), scale))
+                .transpose()?,
         })
     }
 
@@ -35,6 +40,19 @@ impl<W: Word> Pdcc<W> {
     pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         let u_unsat = self.form.voltage(now);
         let e = self.form.emf(now);
+        if let Some(table2) = &self.table2 {
+            let Modulated { u, reach, command } = table2.modulate(now, u_unsat, e);
+            return Decision {
+                u_unsat,
+                u,
+                reach,
+                vector: 0,
+                command,
+                integral: now.integral,
+                hysteresis: now.hysteresis,
+                past: self.form.past(now, u),
+            };
+        }
         let limited = limit::limit(
             self.saturation,
             now.k,

@@ -2,12 +2,13 @@
 
 use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
+use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, halve, round_half_up, within, word};
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::{self, Limited};
 use crate::model::{Reach, sector};
-use crate::{DiscretePhase, Error, Saturation, Spec, Switch};
+use crate::{DiscretePhase, Error, Modulation, Saturation, Spec, Switch};
 use std::f64::consts::TAU;
 
 #[derive(Clone, Debug)]
@@ -22,6 +23,7 @@ pub struct PiPwm<W> {
     dead_time: DeadTime<W>,
     /// Of three pulsed legs, or of the pair.
     legs: CommonModeRule<W>,
+    table2: Option<Table2<W>>,
 }
 
 /// Coefficients of a reference that turns.
@@ -72,6 +74,9 @@ impl<W: Word> PiPwm<W> {
                 Switch::Off => CommonModeRule::new(spec, options.common_mode, scale)?,
             },
             integral_range,
+            table2: (options.modulation == Modulation::Table2)
+                .then(|| Table2::new(spec, (options.saturation, options.zero), scale))
+                .transpose()?,
         })
     }
 
@@ -92,6 +97,35 @@ impl<W: Word> PiPwm<W> {
         let p = both(|x| due[x] + drop[x]);
         let u_unsat = both(|x| p[x] + now.integral[x] + forward[x]);
         // 10, 11
+        let flow = match &self.turning {
+            Some(turning) => both(|x| turning.di.mul(now.i[x])),
+            None => drop.map(|drop| -drop),
+        };
+        let Modulated { u, reach, command } = match &self.table2 {
+            Some(table2) => table2.modulate(now, u_unsat, now.e),
+            None => self.pulses(now, u_unsat, flow),
+        };
+        // 12
+        let [low, high] = self.integral_range;
+        let integral = both(|x| {
+            let distance = u[x] - forward[x] - now.integral[x];
+            let moved = now.integral[x] + self.k_i.mul(distance);
+            within(moved, low, high)
+        });
+        Decision {
+            u_unsat,
+            u,
+            reach,
+            vector: 0,
+            command,
+            integral,
+            hysteresis: now.hysteresis,
+            past: now.past,
+        }
+    }
+
+    /// The limited voltage by three pulses.
+    fn pulses(&self, now: &Inputs<W>, u_unsat: [W; 2], flow: [W; 2]) -> Modulated<W> {
         let limited = limit::limit(
             self.saturation,
             now.k,
@@ -100,34 +134,11 @@ impl<W: Word> PiPwm<W> {
             now.e,
         );
         let Limited { u, legs, reach } = self.legs.readable(now.k, now.v_bus, &limited);
-        // 12
-        let [low, high] = self.integral_range;
-        let integral = both(|x| {
-            let distance = u[x] - forward[x] - now.integral[x];
-            let moved = now.integral[x] + self.k_i.mul(distance);
-            within(moved, low, high)
-        });
-        let flow = match &self.turning {
-            Some(turning) => both(|x| turning.di.mul(now.i[x])),
-            None => drop.map(|drop| -drop),
-        };
-        Decision {
-            u_unsat,
-            u,
-            reach,
-            vector: 0,
-            command: pulses::three(
-                now,
-                legs,
-                self.dead_time.shifts(now, flow),
-                &self.legs,
-                false,
-            ),
-            integral,
-            hysteresis: now.hysteresis,
-            past: now.past,
-        }
+        let shifts = self.dead_time.shifts(now, flow);
+        let command = pulses::three(now, legs, shifts, &self.legs, false);
+        Modulated { u, reach, command }
     }
+
     /// One controller of the conducting pair's current.
     fn decide_pair(&self, now: &Inputs<W>) -> Decision<W> {
         // 9

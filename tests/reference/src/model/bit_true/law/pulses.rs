@@ -55,7 +55,8 @@ pub fn three<W: Word>(
         legs: Legs::new(
             all_three(|x| compare(now, pulses[x] + lift, common_mode.top)),
             [LegState::Pulsed; 3],
-        ),
+        )
+        .into(),
         terminal,
         off: 0,
     }
@@ -102,7 +103,7 @@ pub fn line<W: Word>(
     compare[pulsed] = compare_up_to(now, t, shifts[pulsed], legs.top);
     state[pulsed] = LegState::Pulsed;
     state[low] = LegState::Low;
-    command.legs = Legs::new(compare, state);
+    command.legs = Legs::new(compare, state).into();
     command.terminal[pulsed] = t;
     command.off = sector::OUT_PHASE[sector_eff] + 1;
     command

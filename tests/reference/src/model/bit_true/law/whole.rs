@@ -52,7 +52,8 @@ impl<W: Word> Whole<W> {
                 } else {
                     [LegState::Pulsed; 3]
                 },
-            ),
+            )
+            .into(),
             terminal: legs.map(|leg| if leg > 0 { reach } else { word(0.0) }),
             off: vectors::off_leg(vector).map_or(0, |leg| leg + 1),
         }

@@ -45,6 +45,7 @@ pub fn command(
     let duties = Duties {
         duty: (terminal / now.v_bus).into(),
         state,
+        later: None,
     };
     let command = Command {
         duties,

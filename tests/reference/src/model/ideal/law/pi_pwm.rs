@@ -2,13 +2,14 @@
 
 use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
+use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
 use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
 use crate::model::variant::Variant;
 use crate::model::{Reach, sector};
-use crate::{Error, Saturation, Spec, Switch};
-use nalgebra::Vector3;
+use crate::{Error, Modulation, Saturation, Spec, Switch};
+use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,7 @@ pub struct PiPwm {
     dead_time: DeadTime,
     /// Of three pulsed legs, or of the pair, of which one is low throughout as of vectors.
     legs: CommonModeRule,
+    table2: Option<Table2>,
 }
 
 impl PiPwm {
@@ -43,6 +45,9 @@ impl PiPwm {
                 Switch::Off => CommonModeRule::new(spec, options.common_mode)?,
             },
             integral_max: spec.inverter.v_bus_max()?,
+            table2: (options.modulation == Modulation::Table2)
+                .then(|| Table2::new(spec, (options.saturation, options.zero)))
+                .transpose()?,
         })
     }
 
@@ -58,26 +63,40 @@ impl PiPwm {
         };
         let p = (i_due - now.i) * self.k_p;
         let u_unsat = p + now.integral + forward;
-        let limited = limit::limit(
-            self.saturation,
-            &phases(&u_unsat),
-            &phases(&now.e),
-            self.legs.reach(now.v_bus),
-        );
-        let legs = self.legs.readable(&limited.u, now.v_bus);
-        let u = clarke(&legs);
+        let Modulated { u, reach, command } = match &self.table2 {
+            Some(table2) => table2.modulate(now, &u_unsat, &now.e),
+            None => self.pulses(now, &u_unsat),
+        };
         let integral = now.integral + (p + u - u_unsat) * self.k_i;
         Decision {
             u_unsat,
             u,
-            reach: limited.reach,
+            reach,
             vector: 0,
-            command: pulses::three(now, &legs, &self.dead_time.shifts(now, 1.0), self.legs),
+            command,
             integral: to_ab(&integral).map(|s_x| s_x.clamp(-self.integral_max, self.integral_max)),
             rises: now.rises,
             past: now.past,
         }
     }
+
+    /// The limited voltage by three pulses.
+    fn pulses(&self, now: &Inputs, u_unsat: &Vector2<f64>) -> Modulated {
+        let limited = limit::limit(
+            self.saturation,
+            &phases(u_unsat),
+            &phases(&now.e),
+            self.legs.reach(now.v_bus),
+        );
+        let legs = self.legs.readable(&limited.u, now.v_bus);
+        let shifts = self.dead_time.shifts(now, 1.0);
+        Modulated {
+            u: clarke(&legs),
+            reach: limited.reach,
+            command: pulses::three(now, &legs, &shifts, self.legs),
+        }
+    }
+
     /// One controller of the conducting pair's current.
     fn decide_pair(&self, now: &Inputs) -> Decision {
         let i = phases(&now.i);

@@ -26,6 +26,7 @@ pub fn three(
             .map(|duty| (duty + lift).clamp(0.0, common_mode.top))
             .into(),
         state: [LegState::Pulsed; 3],
+        later: None,
     };
     Command {
         duties,

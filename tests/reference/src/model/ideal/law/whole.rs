@@ -39,6 +39,7 @@ impl Whole {
             } else {
                 [LegState::Pulsed; 3]
             },
+            later: None,
         };
         Command {
             duties,
