@@ -80,7 +80,7 @@ fn designed(spec: &Spec, origins: &Origins) -> Result<Generated, Diagnostics> {
     let mut errors = Collector::new();
     let description = || {
         match law.period() {
-            Period::Pulses => {}
+            Period::Pulses | Period::Intervals => {}
             Period::TwoVectors => check_miss(spec, &design, origins, &mut errors),
             Period::OneVector => check_stride(spec, &design, origins, &mut errors),
         }

@@ -112,11 +112,14 @@ static inline hexagen_sample hexagen_with_third(hexagen_sample sample, uint16_t 
     return sample;
 }
 
-/** State of an inverter leg for one PWM period. */
+/** State of an inverter leg, for a whole period or one of its intervals. */
 typedef enum {
-    /** Both switches follow the timer channel (complementary outputs). */
+    /**
+     * In hexagen_legs: both switches follow the timer channel (complementary outputs). In
+     * hexagen_intervals: the upper switch is on throughout the interval.
+     */
     HEXAGEN_LEG_PULSED = 0,
-    /** The lower switch is on for the whole period, the upper one off. */
+    /** The lower switch is on throughout, the upper one off. */
     HEXAGEN_LEG_LOW = 1,
     /** Both switches are off: the leg floats or its diodes conduct. */
     HEXAGEN_LEG_OFF = 2
@@ -147,13 +150,13 @@ static inline hexagen_legs hexagen_all_legs(hexagen_leg state)
 }
 
 /**
- * Three intervals of one period with a state per leg each, for modulators that turn legs off and on
- * within a period; the inverter's output enables change by a compare event.
+ * Three intervals of each PWM period with a state per leg each, for modulators that turn legs off and
+ * on within a period; the timer changes output modes and enables by compare events.
  *
- * The first two end at an instant, timer counts from the beginning of the period, the second not
- * before the first; the third ends with the period. States are those of legs a, b, c in two bits
- * each, a's lowest, as of hexagen_leg: an index for a table of the timer's output enables. A pulsed
- * leg has its upper switch on for the whole of an interval. The third is a zero vector.
+ * The first two end at an instant, 0 to TIMER_PERIOD counts behind the beginning of the PWM period, the
+ * second not before the first; the third ends with the period. One count is 1/TIMER_PERIOD of the PWM
+ * period: two clocks of a centre-aligned timer. States are those of legs a, b, c in two bits each, a's
+ * lowest, as of hexagen_leg: an index for a table of outputs. The third interval is a zero vector.
  */
 typedef struct {
     uint16_t end[2];

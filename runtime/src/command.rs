@@ -1,13 +1,14 @@
 //! Commands of a control period to the inverter.
 
-/// State of an inverter leg.
+/// State of an inverter leg, for the whole period ([`Legs`]) or one of its intervals ([`Intervals`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum LegState {
-    /// Both switches follow the timer channel (complementary outputs).
+    /// In `Legs`: both switches follow the timer channel (complementary outputs). In `Intervals`: the
+    /// upper switch is on throughout the interval.
     Pulsed = 0,
-    /// The lower switch is on for the whole period, the upper one off.
+    /// The lower switch is on throughout, the upper one off.
     Low = 1,
     /// Both switches are off: the leg floats or its diodes conduct.
     #[default]
@@ -34,8 +35,9 @@ pub trait Command: Copy + 'static {
     /// Timer counts for which the upper switches of legs a, b, c are on; `None` for a leg that is
     /// off for the whole period.
     fn on(self) -> [Option<u16>; 3];
-    /// Three instants, timer counts, and the states of the legs in up to three intervals, two bits per
-    /// leg: all that a command holds. Unused ones are 0. For verification.
+    /// All that a command holds: the compare values of legs a, b, c, or the ends of two intervals and 0,
+    /// timer counts; then the states of the legs, or those in three intervals, two bits per leg, a's
+    /// lowest. Unused words are 0. For verification.
     fn words(self) -> [u16; 6];
 }
 
@@ -167,12 +169,14 @@ impl defmt::Format for Legs {
     }
 }
 
-/// Three intervals of one period with a state per leg each, for modulators that turn legs off and on
-/// within a period. Inverters need output enables that change by a compare event.
+/// Three intervals of each PWM period with a state per leg each, for modulators that turn legs off and
+/// on within a period. The inverter's timer has to change output modes and enables by compare events
+/// ([guide](crate::guide::boards#legs-that-change-within-a-period)).
 ///
-/// The first two end at an instant, timer counts from the beginning of the period, the second not
-/// before the first; the third ends with the period. A pulsed leg has its upper switch on for the
-/// whole of an interval. The third is a zero vector: there a pulsed leg counts as low.
+/// The first two end at an instant, 0 to `TIMER_PERIOD` counts behind the beginning of the PWM period,
+/// the second not before the first; the third ends with the period. One count is 1/`TIMER_PERIOD` of the
+/// PWM period: two clocks of a centre-aligned timer, whose count goes up and down. The third interval is a zero
+/// vector: there a pulsed leg counts as low.
 ///
 /// ```
 /// use hexagen::{Command, Intervals, LegState};
@@ -192,7 +196,8 @@ impl Intervals {
     /// All legs off for the whole period: the safe command of a tripped drive.
     pub const OFF: Self = Self::all(LegState::Off);
 
-    /// Ends of the first two intervals, and states of legs a, b, c in each of the three.
+    /// Ends of the first two intervals, timer counts, and states of legs a, b, c in each of the three. An
+    /// end before the first makes the second interval empty.
     #[inline]
     #[must_use]
     pub const fn new(ends: [u16; 2], [first, second, third]: [[LegState; 3]; 3]) -> Self {
@@ -200,7 +205,8 @@ impl Intervals {
         Self::of_states(ends, states)
     }
 
-    /// Ends of the first two intervals, and [`states`](Self::states).
+    /// Ends of the first two intervals, timer counts, and [`states`](Self::states): of each leg 0, 1 or 2 as
+    /// of [`LegState`], 3 counts as 2; bits from 6 on have no effect.
     #[inline]
     #[must_use]
     pub const fn of_states(ends: [u16; 2], states: [u16; 3]) -> Self {
@@ -214,7 +220,7 @@ impl Intervals {
         Self::new([0; 2], [[state; 3]; 3])
     }
 
-    /// Ends of the first two intervals, timer counts from the beginning of the period.
+    /// Ends of the first two intervals, timer counts from the beginning of the PWM period.
     #[inline]
     #[must_use]
     pub const fn ends(self) -> [u16; 2] {
@@ -253,7 +259,7 @@ impl Command for Intervals {
                 if state == LegState::Pulsed { length } else { 0 }
             };
             let is_off = one == LegState::Off && two == LegState::Off && three == LegState::Off;
-            // The sum is at most the second instant.
+            // The sum is at most the greater of the two ends.
             (!is_off).then_some(of(one, lengths[0]).wrapping_add(of(two, lengths[1])))
         };
         let ([a1, b1, c1], [a2, b2, c2], [a3, b3, c3]) = (one, two, three);

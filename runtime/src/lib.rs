@@ -2,7 +2,7 @@
 //!
 //! `hexagen::controller!` emits a type per motor and controller: constants, tables and the law.
 //! This crate has the parts that all drives share: the [`Drive`] and its two halves, the
-//! [`Supervisor`] (faults, calibration, start-up), inputs ([`Sample`]) and outputs ([`Legs`]).
+//! [`Supervisor`] (faults, calibration, start-up), inputs ([`Sample`]) and outputs ([`Legs`], [`Intervals`]).
 //!
 //! - [`guide`]: from a data sheet to a motor that turns, in chapters of a few minutes each; begin with
 //!   [the first drive](guide::first_drive).

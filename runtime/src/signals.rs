@@ -16,7 +16,8 @@ pub struct Signals {
     /// Currents of phases a, b, c into the motor at the beginning of the period, ampere.
     pub currents: [I16F16; 3],
     /// Mean terminal voltages of the command (with `delay: 1` in effect in the next period), volt
-    /// against the negative rail at the nominal bus; `None` for a leg that is off.
+    /// against the negative rail at the nominal bus; `None` for a leg that is off. Of `Intervals`: time in
+    /// which a leg is off counts as 0.
     pub voltages: [Option<I16F16>; 3],
     /// Estimated EMF of phases a, b, c in the period in which the command takes effect (PHCC: in
     /// the current one), volt; `None` if the law estimates none.

@@ -225,10 +225,10 @@ fn check_reach(kind: &str, total: &Report) {
         ("backward", total.backward),
         ("tripped", total.tripped),
     ] {
-        // A whole vector is never limited, and a P or PI loop follows no commutation.
+        // A whole vector is never limited, and a P loop follows no commutation.
         let has_it = match what {
             "limited" | "past reach" => !matches!(kind, "fcs-mpc" | "phcc"),
-            "commutating" => !matches!(kind, "p-pwm" | "pi-pwm"),
+            "commutating" => kind != "p-pwm",
             _ => true,
         };
         let often = total.steps / 2000;

@@ -63,8 +63,6 @@ pub struct Modulated<'b> {
     pub command: Intervals<'b>,
     /// Phase voltages a, b: within the hexagon of the vectors in use.
     pub u: Phases<'b>,
-    /// Whether the voltage was outside.
-    pub cut: Flag<'b>,
 }
 
 impl<'b> Table2<'b> {
@@ -134,7 +132,7 @@ impl<'b> Table2<'b> {
         l.b.stage("set_intervals", &[doc]);
         named! {
             let end_first = compare_of(l, first, self.bus, None);
-            let end_both = compare_of(l, both, self.bus, None).max(end_first);
+            let end_both = compare_of(l, both, self.bus, None);
         }
         named! {
             let legs_first = states(l, 0).at(choice);
@@ -146,7 +144,6 @@ impl<'b> Table2<'b> {
                 states: [legs_first, legs_second, zero],
             },
             u: Phases([v_a, v_b]),
-            cut: limited.cut,
         }
     }
 
@@ -184,7 +181,7 @@ fn of_three_phases<'b>(l: &Lowering<'b>, legs: Phases<'b, 3>) -> Vectors<'b> {
         let leg_middle = a + b + c - high - low;
     }
     let is_high = [a_is_high, b_is_high];
-    // Of the two lower legs the one behind the highest is at least as high as the other.
+    // Whether the leg behind the highest is the lowest; else the one before it is.
     let behind = pick(is_high, [b, c, a]);
     let before = pick(is_high, [c, a, b]);
     named! {
@@ -266,7 +263,7 @@ fn states<'b>(l: &Lowering<'b>, interval: usize) -> Lut<'b> {
     let name = ["first_states", "second_states"][interval];
     let which = ["first", "second"][interval];
     let doc = format!(
-        "Legs in the {which} interval, two bits each (0 high, 1 low, 2 off), by 2 times the phase in both intervals plus 1 if it is low; from 6 on, in commutation, plus 1 if the phase behind is the lowest."
+        "Legs in the {which} interval, two bits each (0 high, 1 low, 2 off). Rows 0 to 5, outside commutation: 2 p + 1 if leg p is low, else 2 p, p (0 a, 1 b, 2 c) the leg in both pairs. Rows 6 to 11, in commutation: 6 + 2 p + 1 if the leg behind p is the lowest, else 6 + 2 p, p the highest leg."
     );
     let column = (0..CHOICES).map(|choice| states_of(choice, interval));
     l.b.column("choice", name, column.collect(), &doc)

@@ -192,6 +192,9 @@ fn vector_constants(inverter: &InverterSpec, period: Period) -> [PublicConstant;
                     Period::Pulses => {
                         "For comparison: the step reaches the same times by min/max injection."
                     }
+                    Period::Intervals => {
+                        "The step uses these times in commutation; outside it those of pair vectors, with 2 in place of sqrt(3)."
+                    }
                     Period::TwoVectors => {
                         "For comparison: the step divides a period between two vectors, not three."
                     }

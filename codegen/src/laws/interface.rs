@@ -263,7 +263,12 @@ fn current_sensors(spec: &Spec) -> String {
     let delay = inverter.sampling_delay(spec.controller.common().delay);
     let instant = if delay > 0.0 {
         let delay = engineering(delay, "s");
-        format!(", sampled {delay} (half the dead time) behind the turning point of the timer")
+        let begin = if spec.controller.has_intervals() {
+            "beginning of the period"
+        } else {
+            "turning point of the timer"
+        };
+        format!(", sampled {delay} (half the dead time) behind the {begin}")
     } else {
         String::new()
     };

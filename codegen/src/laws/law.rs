@@ -94,6 +94,8 @@ pub struct Description {
 pub enum Period {
     /// Pulses, any voltage of the hexagon.
     Pulses,
+    /// Two neighbouring vectors and a zero vector, any voltage of their hexagon.
+    Intervals,
     /// Two vectors, each for a part of the period.
     TwoVectors,
     /// One vector.

@@ -125,7 +125,7 @@ pub fn wiring(spec: &Spec) -> Vec<String> {
     if spec.controller.has_intervals() {
         lines.extend([
             String::new(),
-            "The command has three intervals, at whose ends legs turn on and off: the timer changes its output enables by compare events.".to_owned(),
+            "The command has three intervals, at whose ends legs turn on and off: the timer changes its output modes and enables by compare events.".to_owned(),
         ]);
     }
     lines.extend(rotor_sensor(spec));

@@ -27,6 +27,10 @@ const LACK: f64 = 1.17;
 /// (simulated: trips from 0.88 on).
 pub(super) const INTEGRATED_EMF: f64 = 0.85;
 
+/// Largest line EMF over the bus that pair vectors outweigh at every angle: a phase voltage of half the bus is their
+/// most, and at the edge of a sector the trapezoid's EMFs E, -E, -E have a zero-sum part of 4/3 E, 2/3 of the line EMF 2 E.
+pub(super) const EMF_BY_PAIRS: f64 = 0.75;
+
 /// Current of a braking speed loop over its limit: commutations overshoot (simulated).
 const BRAKING: f64 = 1.15;
 
@@ -100,7 +104,7 @@ fn blind_start(spec: &Spec, design: &LoopDesign) -> f64 {
         });
     let own = start.current
         + match law.period() {
-            Period::Pulses => 0.0,
+            Period::Pulses | Period::Intervals => 0.0,
             // A pair shares the period with its own zero only: the voltage may lie 30 degrees off
             // that line.
             Period::TwoVectors => vector * 3_f64.sqrt() / 4.0,

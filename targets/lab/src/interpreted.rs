@@ -116,10 +116,7 @@ impl CommandPlaces {
 
     /// All legs in one state.
     fn at_rest(self, state: LegState) -> AnyCommand {
-        match self {
-            Self::Legs { .. } => Legs::all(state).into(),
-            Self::Intervals { .. } => Intervals::all(state).into(),
-        }
+        AnyCommand::all(state, matches!(self, Self::Intervals { .. }))
     }
 }
 

@@ -61,7 +61,7 @@ pub struct Coverage {
     pub limited: u64,
     /// Of these, beyond the limit along the EMF (torque priority).
     pub past_reach: u64,
-    /// In control with a commutation under way (pair modulation).
+    /// In control with a commutation under way (modulation pair or table2, or whole vectors).
     pub commutating: u64,
     /// In control with an interpolated rotor angle.
     pub timed: u64,

@@ -35,6 +35,45 @@ impl AnyCommand {
         }
     }
 
+    /// All legs in one state for the whole period, as pulses or as intervals.
+    #[inline]
+    pub fn all(state: LegState, has_intervals: bool) -> Self {
+        if has_intervals {
+            Intervals::all(state).into()
+        } else {
+            Legs::all(state).into()
+        }
+    }
+
+    /// How many of [`Self::instants`] mean something.
+    pub fn instant_count(self) -> usize {
+        match self {
+            Self::Legs(_) => 3,
+            Self::Intervals(_) => 2,
+        }
+    }
+
+    /// Timer counts for which legs a, b, c are off. `timer_period`: counts of the period.
+    pub fn off(self, timer_period: u16) -> [u16; 3] {
+        let (states, lengths) = match self {
+            Self::Legs(legs) => ([legs.state(); 3], [timer_period, 0, 0]),
+            Self::Intervals(intervals) => {
+                let [first, second] = intervals.ends();
+                let lengths = [
+                    first,
+                    second.saturating_sub(first),
+                    timer_period.saturating_sub(second),
+                ];
+                (intervals.state(), lengths)
+            }
+        };
+        [0, 1, 2].map(|leg| {
+            let intervals = states.iter().zip(lengths);
+            let off = intervals.filter(|(legs, _)| legs[leg] == LegState::Off);
+            off.map(|(_, length)| length).sum()
+        })
+    }
+
     /// The pulses; none of intervals.
     pub fn legs(self) -> Option<Legs> {
         match self {
@@ -75,7 +114,7 @@ impl Default for AnyCommand {
 impl Command for AnyCommand {
     #[inline]
     fn at_rest(state: LegState) -> Self {
-        Self::Legs(Legs::all(state))
+        Self::all(state, false)
     }
 
     #[inline]

@@ -21,13 +21,13 @@ enum LimitEmf<'b> {
 pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
     lower_with(spec, scale, Gain::stiffness(design.k_di), |l, set_point| {
         let pair = options.modulation == Modulation::Pair;
-        let table2 = options.modulation == Modulation::Table2;
+        let is_table2 = options.modulation == Modulation::Table2;
         let step = CurrentLoop {
             l,
             options: &options.common,
             design,
             needs: Needs {
-                commutation: pair || table2,
+                commutation: pair || is_table2,
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
                 memory: 0,
@@ -44,9 +44,9 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             }
         });
         let priority = Priority::of(options.saturation, emf);
-        if let Some(table2) = front.table2(options.zero).filter(|_| table2) {
+        if let Some(table2) = front.table2(options.zero).filter(|_| is_table2) {
             let modulated = table2.modulate(l, priority, u);
-            let remembered = front.turned(l, modulated.cut);
+            let remembered = vec![];
             step.remember(
                 &front,
                 modulated.command,

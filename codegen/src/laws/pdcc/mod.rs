@@ -4,6 +4,7 @@ mod linear;
 mod lower;
 
 use super::current_loop::{LinearLoop, LoopDesign};
+use super::start::EMF_BY_PAIRS;
 use super::{Description, Law, Period, StableRange, Start};
 use crate::blocks::Scale;
 use crate::scaling::Lowered;
@@ -25,7 +26,10 @@ impl Law for PdccSpec {
     }
 
     fn period(&self) -> Period {
-        Period::Pulses
+        match self.modulation {
+            Modulation::Table2 => Period::Intervals,
+            Modulation::ThreePhase | Modulation::Pair => Period::Pulses,
+        }
     }
 
     fn linear<'a>(
@@ -40,6 +44,10 @@ impl Law for PdccSpec {
     fn start(&self, _: bool) -> Start {
         Start {
             hides_leg: self.modulation == Modulation::Pair,
+            part_of_bus: match self.modulation {
+                Modulation::Table2 => EMF_BY_PAIRS,
+                Modulation::ThreePhase | Modulation::Pair => 1.0,
+            },
             ..Start::default()
         }
     }

@@ -4,12 +4,12 @@ mod linear;
 mod lower;
 
 use super::current_loop::{LinearLoop, LoopDesign};
-use super::start::INTEGRATED_EMF;
+use super::start::{EMF_BY_PAIRS, INTEGRATED_EMF};
 use super::{Cause, Description, Law, Period, StableRange, Start};
 use crate::blocks::Scale;
 use crate::diagnostics::engineering;
 use crate::scaling::Lowered;
-use crate::spec::{PiPwmSpec, Spec};
+use crate::spec::{PiModulation, PiPwmSpec, Spec};
 use linear::{PiLoop, is_stable_with_winding_time};
 
 impl Law for PiPwmSpec {
@@ -44,7 +44,10 @@ impl Law for PiPwmSpec {
     }
 
     fn period(&self) -> Period {
-        Period::Pulses
+        match self.modulation {
+            PiModulation::Table2 => Period::Intervals,
+            PiModulation::ThreePhase => Period::Pulses,
+        }
     }
 
     fn linear<'a>(
@@ -67,6 +70,8 @@ impl Law for PiPwmSpec {
         Start {
             part_of_bus: if self.feed_forward && slow {
                 INTEGRATED_EMF
+            } else if self.modulation == PiModulation::Table2 {
+                EMF_BY_PAIRS
             } else {
                 1.0
             },

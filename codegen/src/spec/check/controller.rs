@@ -13,7 +13,8 @@ use crate::spec::controller::common::{
 use crate::spec::controller::{self, KINDS, Kind};
 use crate::spec::reader::Reader;
 use crate::spec::schema;
-use crate::spec::{BusSource, ControllerSpec, RotorSensing, RotorSource, TABLE2};
+use crate::spec::words::Words as _;
+use crate::spec::{BusSource, ControllerSpec, RotorSensing, RotorSource, TABLE2, ZeroVector};
 use std::f64::consts::TAU;
 
 /// The default controller.
@@ -174,6 +175,7 @@ fn check_torque_learning(
 /// What a command of intervals asks of the board.
 fn check_intervals(reader: &Reader, inverter: &Inverter, errors: &mut Collector) {
     let modulation = reader.part("modulation", || TABLE2.to_owned());
+    let zero = reader.field("zero").map(|field| field.value.to_string());
     let mut refuse = |cause: &Part, why: &str, remedy: &str| {
         errors.push(catalogue::intervals_unavailable(
             &modulation,
@@ -187,15 +189,19 @@ fn check_intervals(reader: &Reader, inverter: &Inverter, errors: &mut Collector)
         let remedy = "choose `modulation: pair`, or `leg_enables: within_period` if a compare event of its timer can load the output enables";
         refuse(enables, why, remedy);
     }
-    if let Some(place) = inverter.sensing.low_side.as_ref()
-        && inverter.sensing.reads_off_legs()
-    {
+    if let Some(place) = &inverter.sensing.low_side {
         let why = "and a sensor in a low leg shows its current only while the leg has been low for a while";
         refuse(
             place,
             why,
             "choose `modulation: three_phase`, or a board with sensors in the phases",
         );
+    }
+    if let Some(time) = &inverter.sensing.low_time
+        && zero.as_deref() == Some(ZeroVector::PairLow.word())
+    {
+        let why = "and with `zero: pair_low` the third leg may switch without being low";
+        refuse(time, why, "choose `zero: all_low`, or leave the time out");
     }
     for limit in inverter.bus_currents.iter().flatten() {
         let why = "and the bus current of such a period is not computed";

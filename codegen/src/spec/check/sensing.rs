@@ -20,6 +20,8 @@ pub(super) struct Sensing {
     pub low_side: Option<Part>,
     /// Second.
     pub minimum_low_time: f64,
+    /// `minimum_low_time`, if that is above 0.
+    pub low_time: Option<Part>,
 }
 
 impl Sensing {
@@ -53,6 +55,7 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
         reader.refuse_without(errors, "sensed_phases: abc", &names);
     }
     let place = read_place(reader, errors);
+    let minimum_low_time = time(reader, errors, "minimum_low_time").unwrap_or(0.0);
     let is_low = matches!(place, Some(CurrentSensing::LowSide(_)));
     Sensing {
         phases,
@@ -62,7 +65,8 @@ pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
         sum_samples: reader.integer(errors, "current_sum_samples"),
         place,
         low_side: is_low.then(|| reader.part("current_sensing", String::new)),
-        minimum_low_time: time(reader, errors, "minimum_low_time").unwrap_or(0.0),
+        minimum_low_time,
+        low_time: (minimum_low_time > 0.0).then(|| reader.part("minimum_low_time", String::new)),
     }
 }
 

@@ -67,7 +67,9 @@ pub(super) fn check(
             Some(f_pwm).filter(|f_pwm| F_PWM.contains(f_pwm)),
         ));
     }
-    let turns_off = controller.and_then(ControllerSpec::turns_off);
+    // Intervals are refused on low-side sensors of any number.
+    let turns_off = controller.filter(|controller| !controller.has_intervals());
+    let turns_off = turns_off.and_then(ControllerSpec::turns_off);
     if let Some(off) = turns_off.filter(|_| !sensing.reads_off_legs()) {
         let place = reader.part("current_sensing", String::new);
         let phases = reader.part("sensed_phases", || "ab".to_owned());

@@ -25,7 +25,7 @@ pub(super) const ZERO: Rule = rule::choice::<ZeroVector>("zero", "all_low")
 /// Reads the option `zero`. `modulation`: the one in force.
 pub(super) fn read_zero(reader: &Reader, modulation: &str, errors: &mut Collector) -> ZeroVector {
     if modulation != TABLE2 {
-        let why = "pulses leave the zero vectors to the legs";
+        let why = "only `table2` has a zero vector to choose";
         refuse(reader, "zero", ["modulation", modulation], why, errors);
     }
     reader.choice_or_preset(errors, "zero", &[])
@@ -34,11 +34,17 @@ pub(super) fn read_zero(reader: &Reader, modulation: &str, errors: &mut Collecto
 /// Refuses options without effect on intervals, of which each has whole legs.
 pub(super) fn refuse_pulse_options(reader: &Reader, errors: &mut Collector) {
     let setting = ["modulation", TABLE2];
-    let why = "the legs change at the ends of intervals, all at once";
-    for option in [
-        common::DEAD_TIME_COMPENSATION.name,
-        common::COMMON_MODE.name,
-    ] {
+    let whys = [
+        (
+            common::DEAD_TIME_COMPENSATION.name,
+            "it shifts the edges of pulses, and an interval has none of its own",
+        ),
+        (
+            common::COMMON_MODE.name,
+            "`zero` says what the zero vector is",
+        ),
+    ];
+    for (option, why) in whys {
         refuse(reader, option, setting, why, errors);
     }
 }

@@ -162,6 +162,8 @@ pub(super) struct Sums {
     equal_compares: u64,
     equal_steps: u64,
     compares_apart: u16,
+    /// Compare values, or ends of intervals.
+    instants: u64,
     histogram: Vec<u64>,
 }
 
@@ -179,6 +181,7 @@ impl Sums {
             equal_compares: 0,
             equal_steps: 0,
             compares_apart: 0,
+            instants: 0,
             histogram: vec![0; BINS],
         }
     }
@@ -225,7 +228,8 @@ impl Sums {
                 self.histogram[bin(error / self.compared.bound)] += 1;
             }
         }
-        for phase in 0..3 {
+        self.instants += legs.instant_count() as u64;
+        for phase in 0..legs.instant_count() {
             let exact = duties.duty[phase] * f64::from(period);
             let error = (f64::from(legs.instants()[phase]) - exact).abs();
             let largest = &mut self.duty_largest[limited];
@@ -247,6 +251,7 @@ impl Sums {
         }
         self.duty_error += other.duty_error;
         self.equal_compares += other.equal_compares;
+        self.instants += other.instants;
         self.equal_steps += other.equal_steps;
         self.compares_apart = self.compares_apart.max(other.compares_apart);
         for (count, more) in self.histogram.iter_mut().zip(&other.histogram) {
@@ -279,8 +284,8 @@ impl Sums {
             duty_bound_counts: self.compared.duty[0],
             duty_limited_counts: self.duty_largest[1],
             duty_limited_bound_counts: self.compared.duty[1],
-            duty_rms_counts: (self.duty_error / values).sqrt(),
-            equal_compares_pct: 100.0 * self.equal_compares as f64 / values,
+            duty_rms_counts: (self.duty_error / self.instants as f64).sqrt(),
+            equal_compares_pct: 100.0 * self.equal_compares as f64 / self.instants as f64,
             equal_steps_pct: 100.0 * self.equal_steps as f64 / run,
             compares_apart_counts: self.compares_apart,
         }

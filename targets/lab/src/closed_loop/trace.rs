@@ -44,9 +44,9 @@ pub struct PeriodRow {
     pub adc: [u16; 2],
     /// Phase currents in amperes.
     pub currents: [f64; 3],
-    /// Compare values in effect.
+    /// Compare values in effect, timer counts; of a command of intervals the ends of the first two, and 0.
     pub compare: [u16; 3],
-    /// Leg states in effect: 0 pulsed, 1 low, 2 off.
+    /// Leg states in effect: 0 pulsed, 1 low, 2 off; of a command of intervals those in the first.
     pub state: [u8; 3],
     /// Mean torque in newton metres.
     pub torque_mean: f64,
@@ -55,7 +55,7 @@ pub struct PeriodRow {
     /// Mean terminal voltage, beta axis, in volts.
     pub v_beta_mean: f64,
     /// Whether the command is on the hexagon's edge: compare values of the driven legs span the
-    /// full period.
+    /// full period, or intervals leave no time for a zero vector.
     pub saturated: bool,
     /// Turn-ons of all six switches during the period.
     pub turn_ons: u32,
@@ -321,9 +321,14 @@ impl Observer for Trace {
     }
 }
 
-/// Whether a command is on the edge of the voltage hexagon of legs that reach so many counts.
+/// Whether a command is on the edge of the voltage hexagon of legs that reach so many counts; one of intervals is where it
+/// leaves no time for a zero vector.
 fn saturated(command: AnyCommand, reach: u16) -> bool {
-    let driven = command.on().into_iter().flatten();
+    let legs = match command {
+        AnyCommand::Legs(legs) => legs,
+        AnyCommand::Intervals(intervals) => return intervals.ends()[1] >= reach,
+    };
+    let driven = legs.on().into_iter().flatten();
     let (least, most) = driven.fold((u16::MAX, 0), |(low, high), c| (low.min(c), high.max(c)));
     most >= least.saturating_add(reach)
 }
@@ -361,7 +366,7 @@ mod tests {
     use super::*;
     use crate::closed_loop::{ClosedLoop, Delay};
     use crate::plant::{Plant, PlantParams, Truth};
-    use hexagen::{LegState, Legs, Sample};
+    use hexagen::{Intervals, LegState, Legs, Sample};
 
     fn plant(omega_m: f64) -> Plant {
         Plant::new(
@@ -434,6 +439,17 @@ mod tests {
                 trace.periods.iter().all(|row| row.turn_ons == per_period),
                 "{legs:?}"
             );
+        }
+    }
+
+    #[test]
+    fn intervals_without_a_zero_vector_are_saturated() {
+        use LegState::{Low, Off, Pulsed};
+        // Leg a low against b, then c: no leg is high all the time.
+        let legs = [[Low, Pulsed, Off], [Low, Off, Pulsed], [Low; 3]];
+        for (end, expected) in [(1800, true), (1799, false)] {
+            let command = Intervals::new([700, end], legs);
+            assert_eq!(saturated(command.into(), 1800), expected, "{end}");
         }
     }
 

@@ -2,7 +2,8 @@
 //!
 //! The upper switch of a pulsed leg is on for `compare` counts around the middle of the period,
 //! the lower one otherwise, so the start of a period (the sampling instant) is the middle of the
-//! lower switch's time. Each change between the two switches is preceded by the dead time.
+//! lower switch's time. Each change between the two switches is preceded by the dead time, also where the leg is off for
+//! less than that in between.
 
 use super::Wiring;
 use hexagen::{Intervals, LegState, Legs};
@@ -25,6 +26,8 @@ pub enum Gate {
 struct LegGate {
     gate: Gate,
     wanted: Gate,
+    /// The switch that was on last.
+    last: Gate,
     /// End of the dead time, from the start of the period; infinite when none runs.
     ready: Option<f64>,
     /// Time of the last change, from the start of the period.
@@ -38,6 +41,7 @@ impl LegGate {
         self.gate = gate;
         self.changed = t;
         if gate != Gate::Off {
+            self.last = gate;
             self.turn_ons += 1;
         }
     }
@@ -48,7 +52,10 @@ impl LegGate {
         }
         let from_rest = self.wanted == Gate::Off;
         self.wanted = wanted;
-        if wanted == Gate::Off || from_rest || dead_time == 0.0 {
+        let ready = self.changed + dead_time;
+        if from_rest && self.last != wanted && self.last != Gate::Off && t < ready {
+            self.ready = Some(ready);
+        } else if wanted == Gate::Off || from_rest || dead_time == 0.0 {
             self.turn(wanted, t);
         } else {
             self.gate = Gate::Off;
@@ -316,6 +323,16 @@ mod tests {
             (0.875, 0, Gate::Lower),
         ];
         assert_eq!(change, want);
+        // Also where it is off for less than that in between.
+        let legs = [[Low, Pulsed, Off], [Low, Off, Pulsed], [Low; 3]];
+        let got = changes(0.125, &[Intervals::new([25, 26], legs)]);
+        let of_b: Vec<_> = got.into_iter().filter(|(_, leg, _)| *leg == 1).collect();
+        let want = [
+            (0.0, 1, Gate::Upper),
+            (0.25, 1, Gate::Off),
+            (0.375, 1, Gate::Lower),
+        ];
+        assert_eq!(of_b, want);
     }
 
     #[test]

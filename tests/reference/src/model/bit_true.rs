@@ -41,7 +41,7 @@ use crate::{AnyCommand, EmfSource, Error, FormatTable, Reference, Spec};
 use bus_current::BusCurrent;
 use constants::{Constants, Scale};
 use fade::Fade;
-use hexagen::{Fault, Intervals, LegState, Legs, Sample};
+use hexagen::{Fault, LegState, Sample};
 use law::{Command, Inputs, Law};
 use parts::Part;
 use ramp::Ramp;
@@ -333,15 +333,6 @@ impl<W: Word> BitTrue<W> {
         self.state.read(self.k.parts, words);
     }
 
-    /// All legs in one state for the whole period.
-    fn at_rest(&self, state: LegState) -> AnyCommand {
-        if self.variant.has_intervals() {
-            Intervals::all(state).into()
-        } else {
-            Legs::all(state).into()
-        }
-    }
-
     /// Whether its commands have intervals.
     pub fn has_intervals(&self) -> bool {
         self.variant.has_intervals()
@@ -583,10 +574,11 @@ impl<W: Word> BitTrue<W> {
         if let Some(field) = &self.weakening {
             weakening = field.follow(weakening, changes, decision.reach != Reach::Inside);
         }
+        let has_intervals = self.has_intervals();
         let command = match verdict.period {
             Period::Control => decision.command,
-            Period::Low => Command::idle(self.at_rest(LegState::Low)),
-            Period::Off => Command::idle(self.at_rest(LegState::Off)),
+            Period::Low => Command::idle(AnyCommand::all(LegState::Low, has_intervals)),
+            Period::Off => Command::idle(AnyCommand::all(LegState::Off, has_intervals)),
         };
         self.state
             .supervisor

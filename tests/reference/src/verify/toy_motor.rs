@@ -71,10 +71,17 @@ impl ToyMotor {
         let e = [e_a, e_b, -(e_a + e_b)];
         let i = [self.i[0], self.i[1], -(self.i[0] + self.i[1])];
         let on = command.on();
+        let off = match command {
+            AnyCommand::Legs(_) => [0; 3],
+            AnyCommand::Intervals(_) => command.off(self.timer_period as u16),
+        };
         let mut v = [0.0; 3];
         for phase in 0..3 {
             v[phase] = match on[phase] {
-                Some(on) => f64::from(on) / self.timer_period * self.v_bus,
+                // While it is off a leg counts as midway.
+                Some(on) => {
+                    (f64::from(on) + f64::from(off[phase]) / 2.0) / self.timer_period * self.v_bus
+                }
                 // A diode against the current; without current about the voltage that makes none.
                 None if i[phase].abs() > self.phase.b * self.v_bus / 4.0 => {
                     if i[phase] > 0.0 {

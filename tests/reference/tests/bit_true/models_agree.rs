@@ -108,16 +108,8 @@ fn follow(variant: &Variant, seed: u64) -> Worst {
 /// Counts for which a leg is on, and off. Which vector has no length, and which of two low legs has a pulse of no length,
 /// makes no difference.
 fn times_of(command: AnyCommand, leg: usize, period: f64) -> [f64; 2] {
-    let on = command.on()[leg].map_or(0.0, f64::from);
-    let off = match command {
-        AnyCommand::Legs(legs) if legs.state()[leg] == LegState::Off => period,
-        AnyCommand::Legs(_) => 0.0,
-        AnyCommand::Intervals(intervals) => {
-            let ends = intervals.ends().map(f64::from);
-            time_off(intervals.state().map(|legs| legs[leg]), ends, period)
-        }
-    };
-    [on, off]
+    let on = command.on()[leg].unwrap_or_default();
+    [on, command.off(period as u16)[leg]].map(f64::from)
 }
 
 /// The same of the ideal model, shares of the period.
@@ -131,16 +123,14 @@ fn exact_times(duties: &Duties, leg: usize) -> [f64; 2] {
     let lengths = [first_end, second_end - first_end];
     let on = states.iter().zip(lengths);
     let on = on.filter(|(state, _)| **state == LegState::Pulsed);
-    let off = time_off(states, [first_end, second_end], 1.0);
-    [on.map(|(_, length)| length).sum(), off]
-}
-
-/// Time for which a leg with these states in three intervals is off.
-fn time_off(states: [LegState; 3], [first, second]: [f64; 2], period: f64) -> f64 {
-    let lengths = [first, second - first, period - second];
-    let off = states.iter().zip(lengths);
+    let off = states
+        .iter()
+        .zip([lengths[0], lengths[1], 1.0 - second_end]);
     let off = off.filter(|(state, _)| **state == LegState::Off);
-    off.map(|(_, length)| length).sum()
+    [
+        on.map(|(_, length)| length).sum(),
+        off.map(|(_, length)| length).sum(),
+    ]
 }
 
 fn compare(

@@ -118,7 +118,7 @@ fn about(method: Method, reading: Reading) -> &'static str {
             "Predicts with the applied vector, the off leg clamped by its diode or floating; EMF from the motor's EMF shape."
         }
         (Method::Pdcc, Reading::Literal) => {
-            "Voltage scaled to the hexagon; EMF from the last period. All three legs are pulsed; the paper's modulation over neighbouring pair vectors, (15), is `modulation=table2`, whose steps are not counted."
+            "Voltage scaled to the hexagon; EMF from the last period. All three legs are pulsed; the paper's own modulator, `modulation=table2` (`hexagen simulate`), is not run on this page, for `cargo xtask cost` counts no step of it."
         }
         (Method::Pdcc, Reading::Corrected) => {
             "At the voltage limit keeps the component along the EMF; commutates two periods ahead; EMF from the motor's EMF shape."

@@ -80,7 +80,6 @@ impl<W: Word> Table2<W> {
         };
         let end = |volts: W| pulses::compare_up_to(now, volts, word(0.0), self.legs.top);
         let ends = [vectors.first, vectors.both].map(end);
-        let ends = [ends[0], ends[1].max(ends[0])];
         let [first, second] = vectors.legs;
         Modulated {
             u,
