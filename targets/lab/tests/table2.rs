@@ -35,8 +35,14 @@ fn torque_is_held_in_all_quadrants() {
             let figures = at(&drive, rpm, TORQUE * torque);
             let mean = figures.mean_torque_nm.expect("no trip") / TORQUE / torque;
             let ripple = figures.ripple_pp_pct.expect("no trip");
+            // With the pair's zero vector the third leg's current flows on through its diodes.
+            let most = if variant.ends_with("pair_low") {
+                45.0
+            } else {
+                30.0
+            };
             assert!(
-                (0.97..1.04).contains(&mean) && ripple < 35.0,
+                (0.955..1.035).contains(&mean) && ripple < most,
                 "{variant}, {rpm} rpm, {torque}: {mean} of the torque, ripple {ripple} %"
             );
         }
@@ -49,11 +55,12 @@ fn figures_are_those_of_the_guide() {
     let three = drive("pdcc:reference=quasi_square,saturation=nearest");
     let slow = at(&table2, 400.0, TORQUE).mean_torque_nm.expect("no trip");
     assert!((slow / TORQUE - 1.02).abs() < 0.005, "{slow} Nm");
-    let figures = [table2, three].map(|drive| {
-        let figures = at(&drive, 1500.0, TORQUE);
+    let fast = |drive: &Prepared| {
+        let figures = at(drive, 1500.0, TORQUE);
         [figures.switching_hz, figures.ripple_pp_pct].map(|figure| figure.expect("no trip"))
-    });
-    let [[table2_hz, table2_ripple], [three_hz, three_ripple]] = figures;
+    };
+    let [table2_hz, table2_ripple] = fast(&table2);
+    let [three_hz, three_ripple] = fast(&three);
     assert!((table2_hz / 1e3 - 11.7).abs() < 0.1, "{table2_hz} Hz");
     assert!((three_hz / 1e3 - 18.1).abs() < 0.1, "{three_hz} Hz");
     assert!((table2_ripple - 26.0).abs() < 1.0, "{table2_ripple} %");
