@@ -555,26 +555,33 @@ void hexagen_start_port(hexagen_port *port)
     port->turn = 0;
 }
 
-hexagen_legs hexagen_legs_of(hexagen_intervals intervals)
+/** Timer counts of an interval, if a leg's upper switch is on in it, else 0. */
+static uint16_t on_in(
+    hexagen_intervals intervals, uint16_t interval, uint16_t leg, uint16_t length)
 {
-    hexagen_legs legs = hexagen_all_legs(HEXAGEN_LEG_OFF);
+    const bool is_on = hexagen_leg_in(intervals, interval, leg) == HEXAGEN_LEG_PULSED;
+    return is_on ? length : (uint16_t)0;
+}
+
+static void show_leg(hexagen_legs *legs, hexagen_intervals intervals, uint16_t leg)
+{
     const uint16_t first = intervals.end[0];
     const uint16_t second =
         (intervals.end[1] > first) ? (uint16_t)(intervals.end[1] - first) : (uint16_t)0;
-    const uint16_t lengths[3] = { first, second, 0 };
-    uint16_t leg;
-    uint16_t interval;
-    for (leg = 0; leg < 3; leg++) {
-        for (interval = 0; interval < 3; interval++) {
-            const hexagen_leg state = hexagen_leg_in(intervals, interval, leg);
-            if (state != HEXAGEN_LEG_OFF) {
-                legs.state[leg] = HEXAGEN_LEG_PULSED;
-            }
-            if (state == HEXAGEN_LEG_PULSED) {
-                legs.compare[leg] = (uint16_t)(legs.compare[leg] + lengths[interval]);
-            }
-        }
-    }
+    const bool is_off = hexagen_leg_in(intervals, 0, leg) == HEXAGEN_LEG_OFF
+        && hexagen_leg_in(intervals, 1, leg) == HEXAGEN_LEG_OFF
+        && hexagen_leg_in(intervals, 2, leg) == HEXAGEN_LEG_OFF;
+    legs->state[leg] = is_off ? HEXAGEN_LEG_OFF : HEXAGEN_LEG_PULSED;
+    legs->compare[leg] = (uint16_t)(on_in(intervals, 0, leg, first)
+        + on_in(intervals, 1, leg, second));
+}
+
+hexagen_legs hexagen_legs_of(hexagen_intervals intervals)
+{
+    hexagen_legs legs;
+    show_leg(&legs, intervals, 0);
+    show_leg(&legs, intervals, 1);
+    show_leg(&legs, intervals, 2);
     return legs;
 }
 

@@ -60,6 +60,7 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pdcc modulation=pair legs=sensed",
     "pdcc modulation=table2 legs=sensed",
     "pdcc modulation=table2_pair_low legs=sensed",
+    "pdcc modulation=table2_pair_low legs=bootstrap",
     "pdcc modulation=table2 dead_time=compensated",
     "pdcc modulation=table2_pair_low dead_time=compensated",
     "pdcc modulation=table2 supply=limited",
@@ -127,6 +128,7 @@ const WITHOUT_EFFECT: &[&str] = &[
     "pi-pwm modulation=table2_pair_low emf=torque",
     "pi-pwm modulation=table2 legs=sensed",
     "pi-pwm modulation=table2_pair_low legs=sensed",
+    "pi-pwm modulation=table2_pair_low legs=bootstrap",
     "pi-pwm modulation=table2 dead_time=compensated",
     "pi-pwm modulation=table2_pair_low dead_time=compensated",
     "pi-pwm modulation=table2 supply=limited",
@@ -276,10 +278,14 @@ fn every_pair_of_option_values_is_compiled() {
     for (what, codes) in refused.iter().zip(codes) {
         let expected = if three_currents(what) {
             "HX0111"
+        } else if what.contains("modulation=table2")
+            && ["legs=", "supply=limited"]
+                .iter()
+                .any(|of_board| what.contains(of_board))
+        {
+            "HX0410"
         } else if what.ends_with("legs=sensed") && !what.contains("off_leg=nominal") {
             "HX0409"
-        } else if what.contains("table2") && what.contains("supply=limited") {
-            "HX0410"
         } else {
             "HX0404"
         };
