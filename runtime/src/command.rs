@@ -68,9 +68,11 @@ impl Legs {
     #[inline]
     #[must_use]
     pub const fn new(compare: [u16; 3], state: [LegState; 3]) -> Self {
-        let [a, b, c] = compare;
+        let ([a, b, c], [state_a, state_b, state_c]) = (compare, state);
+        // As `packed`, which would take an instruction more here.
+        let states = state_a as u32 | (state_b as u32) << 2 | (state_c as u32) << 4;
         let low = a as u32 | (b as u32) << 16;
-        let high = c as u32 | (packed(state) as u32) << 16;
+        let high = c as u32 | states << 16;
         Self(low as u64 | (high as u64) << 32)
     }
 
@@ -201,7 +203,11 @@ impl Intervals {
     #[inline]
     #[must_use]
     pub const fn new(ends: [u16; 2], [first, second, third]: [[LegState; 3]; 3]) -> Self {
-        let states = [packed(first), packed(second), packed(third)];
+        let states = [
+            packed(first) as u16,
+            packed(second) as u16,
+            packed(third) as u16,
+        ];
         Self::of_states(ends, states)
     }
 
@@ -300,8 +306,8 @@ impl defmt::Format for Intervals {
 
 /// States of legs a, b, c in two bits each, a's lowest.
 #[inline]
-const fn packed([a, b, c]: [LegState; 3]) -> u16 {
-    a as u16 | (b as u16) << 2 | (c as u16) << 4
+const fn packed([a, b, c]: [LegState; 3]) -> u32 {
+    a as u32 | (b as u32) << 2 | (c as u32) << 4
 }
 
 /// The legs' states in a word of [`packed`].
