@@ -50,9 +50,7 @@ impl<E> Priority<E> {
             (LimitRule::TorquePriority, None) | (LimitRule::Nearest, _) => Self::Nearest,
         }
     }
-}
 
-impl<E> Priority<E> {
     /// The same rule in another plane, to which `turn` brings the EMF.
     pub fn of_plane<'b>(
         self,

@@ -133,8 +133,6 @@ impl<'b> Table2<'b> {
         named! {
             let end_first = compare_of(l, first, self.bus, None);
             let end_both = compare_of(l, both, self.bus, None);
-        }
-        named! {
             let legs_first = states(l, 0).at(choice);
             let legs_second = states(l, 1).at(choice);
         }
@@ -260,13 +258,12 @@ fn states_of(choice: i32, interval: usize) -> i32 {
 
 /// The table of legs in the first or the second interval.
 fn states<'b>(l: &Lowering<'b>, interval: usize) -> Lut<'b> {
-    let name = ["first_states", "second_states"][interval];
     let which = ["first", "second"][interval];
     let doc = format!(
         "Legs in the {which} interval, two bits each (0 high, 1 low, 2 off). Rows 0 to 5, outside commutation: 2 p + 1 if leg p is low, else 2 p, p (0 a, 1 b, 2 c) the leg in both pairs. Rows 6 to 11, in commutation: 6 + 2 p + 1 if the leg behind p is the lowest, else 6 + 2 p, p the highest leg."
     );
     let column = (0..CHOICES).map(|choice| states_of(choice, interval));
-    l.b.column("choice", name, column.collect(), &doc)
+    l.b.column("choice", &format!("{which}_states"), column.collect(), &doc)
 }
 
 #[cfg(test)]

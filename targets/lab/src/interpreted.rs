@@ -77,27 +77,24 @@ impl CommandPlaces {
             let mut outputs = program.step.outputs.iter();
             outputs.position(|(output, _)| *output == sought)
         };
+        if program.has_intervals() {
+            return Some(Self::Intervals {
+                ends: [place(Output::End(0))?, place(Output::End(1))?],
+                states: [
+                    place(Output::States(0))?,
+                    place(Output::States(1))?,
+                    place(Output::States(2))?,
+                ],
+            });
+        }
         let phases = |of: fn(Phase) -> Output| {
             let [a, b, c] = Phase::ALL.map(|phase| place(of(phase)));
             Some([a?, b?, c?])
         };
-        let of_legs = || {
-            Some(Self::Legs {
-                compare: phases(Output::Compare)?,
-                state: phases(Output::Leg)?,
-            })
-        };
-        let [first, second] = [0, 1].map(|interval| place(Output::End(interval)));
-        let states = [0, 1, 2].map(|interval| place(Output::States(interval)));
-        match (first, second, states) {
-            (Some(first), Some(second), [Some(one), Some(two), Some(three)]) => {
-                Some(Self::Intervals {
-                    ends: [first, second],
-                    states: [one, two, three],
-                })
-            }
-            _ => of_legs(),
-        }
+        Some(Self::Legs {
+            compare: phases(Output::Compare)?,
+            state: phases(Output::Leg)?,
+        })
     }
 
     /// The command of a step with these results.

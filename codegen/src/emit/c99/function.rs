@@ -302,14 +302,7 @@ impl<'a> StepFunctions<'a> {
     fn intervals(&self) -> String {
         let ends = [0, 1].map(|interval| self.half(Output::End(interval)));
         let states = [0, 1, 2].map(|interval| self.half(Output::States(interval)));
-        let inner = INDENT.repeat(2);
-        [
-            format!("{INDENT}const hexagen_intervals intervals = {{\n"),
-            wrapped(&inner, &format!("{{ {} }},", ends.join(", "))),
-            wrapped(&inner, &format!("{{ {} }}", states.join(", "))),
-            format!("{INDENT}}};\n{INDENT}return intervals;\n"),
-        ]
-        .concat()
+        returned("intervals", &ends, &states)
     }
 
     /// The command; old state words in it are read before any is written.
@@ -323,15 +316,20 @@ impl<'a> StepFunctions<'a> {
                 |value| printer.shaped(value, Shape::Leg),
             )
         });
-        let inner = INDENT.repeat(2);
-        [
-            format!("{INDENT}const hexagen_legs legs = {{\n"),
-            wrapped(&inner, &format!("{{ {} }},", compare.join(", "))),
-            wrapped(&inner, &format!("{{ {} }}", state.join(", "))),
-            format!("{INDENT}}};\n{INDENT}return legs;\n"),
-        ]
-        .concat()
+        returned("legs", &compare, &state)
     }
+}
+
+/// Returns a command: instants, then states of the legs. `name`: the type's behind `hexagen_`.
+fn returned(name: &str, instants: &[String], states: &[String]) -> String {
+    let inner = INDENT.repeat(2);
+    [
+        format!("{INDENT}const hexagen_{name} {name} = {{\n"),
+        wrapped(&inner, &format!("{{ {} }},", instants.join(", "))),
+        wrapped(&inner, &format!("{{ {} }}", states.join(", "))),
+        format!("{INDENT}}};\n{INDENT}return {name};\n"),
+    ]
+    .concat()
 }
 
 /// Reads the set-point words that a function uses, under their names.

@@ -1,7 +1,6 @@
 //! The emitted type: its constants, its state, and its implementation of the runtime's traits.
 
-use super::function::command_type;
-use super::function::{SetterCode, StepCode};
+use super::function::{SetterCode, StepCode, command_type};
 use super::imports::unsettled;
 use super::names::{doc, docs, fixed_type, number, raw_text, screaming, snake, storage_type};
 use super::source::{Source, quote};

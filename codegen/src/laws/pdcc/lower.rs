@@ -46,14 +46,8 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         let priority = Priority::of(options.saturation, emf);
         if let Some(table2) = front.table2(options.zero).filter(|_| is_table2) {
             let modulated = table2.modulate(l, priority, u);
-            let remembered = vec![];
-            step.remember(
-                &front,
-                modulated.command,
-                Some(modulated.u),
-                None,
-                remembered,
-            );
+            let (command, u) = (modulated.command, modulated.u);
+            step.remember(&front, command, Some(u), None, vec![]);
             return;
         }
         let common_mode = CommonModeRule::new(l, options.common_mode);

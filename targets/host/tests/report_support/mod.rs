@@ -8,9 +8,8 @@ use hexagen_codegen::emit::rust::{Surface, emit_rust, format_rust};
 use hexagen_codegen::pipeline::generate;
 use hexagen_codegen::spec::{Reference, Spec, apply_variant, check, parse_toml};
 
-use hexagen_lab::closed_loop::AnyCommand;
 use hexagen_lab::closed_loop::{
-    CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
+    AnyCommand, CurrentLoop, Held, LimitOptions, RunOptions, measure, quasi_square, speed_limit,
 };
 use hexagen_lab::engine::{
     EngineKind, Model, MotorSource, PlantOptions, Prepared, SelectedMotor, prepare,

@@ -39,9 +39,9 @@ impl CurrentLoop for SameWords {
         let words = self.samples.next().unwrap_or(*sample);
         let before = self.bit_true.physical_state();
         self.ideal.rebuild_from(&before);
-        let legs = self.bit_true.step(&words);
+        let command = self.bit_true.step(&words);
         let duties = self.ideal.step(&words);
-        let step = Step::of(&before, (&self.bit_true, legs), (&self.ideal, duties));
+        let step = Step::of(&before, (&self.bit_true, command), (&self.ideal, duties));
         self.sums.add(&step, self.timer_period);
         duties.to_command(self.timer_period)
     }

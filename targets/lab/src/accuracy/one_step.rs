@@ -125,7 +125,7 @@ impl OneStep {
 pub(super) struct Step<'a> {
     pub before: &'a PhysicalState,
     pub found: Trace,
-    pub legs: AnyCommand,
+    pub command: AnyCommand,
     pub exact: Trace,
     pub duties: Duties,
 }
@@ -134,13 +134,13 @@ impl<'a> Step<'a> {
     /// Decisions of both models in their last step.
     pub fn of(
         before: &'a PhysicalState,
-        (bit_true, legs): (&BitTrue, AnyCommand),
+        (bit_true, command): (&BitTrue, AnyCommand),
         (ideal, duties): (&Ideal, Duties),
     ) -> Self {
         Self {
             before,
             found: bit_true.trace(),
-            legs,
+            command,
             exact: *ideal.trace(),
             duties,
         }
@@ -191,7 +191,7 @@ impl Sums {
         let Step {
             before,
             found,
-            legs,
+            command,
             exact,
             duties,
         } = step;
@@ -199,10 +199,10 @@ impl Sums {
             return;
         }
         let rounded = duties.to_command(period);
-        self.equal_steps += u64::from(*legs == rounded);
-        let same_vector = legs.states() == rounded.states() && found.vector == exact.vector;
+        self.equal_steps += u64::from(*command == rounded);
+        let same_vector = command.states() == rounded.states() && found.vector == exact.vector;
         if same_vector {
-            for (compare, exact) in legs.instants().iter().zip(rounded.instants()) {
+            for (compare, exact) in command.instants().iter().zip(rounded.instants()) {
                 self.compares_apart = self.compares_apart.max(compare.abs_diff(exact));
             }
         }
@@ -228,14 +228,15 @@ impl Sums {
                 self.histogram[bin(error / self.compared.bound)] += 1;
             }
         }
-        self.instants += legs.instant_count() as u64;
-        for phase in 0..legs.instant_count() {
+        self.instants += command.instant_count() as u64;
+        for phase in 0..command.instant_count() {
             let exact = duties.duty[phase] * f64::from(period);
-            let error = (f64::from(legs.instants()[phase]) - exact).abs();
+            let error = (f64::from(command.instants()[phase]) - exact).abs();
             let largest = &mut self.duty_largest[limited];
             *largest = largest.max(error);
             self.duty_error += error * error;
-            self.equal_compares += u64::from(legs.instants()[phase] == rounded.instants()[phase]);
+            self.equal_compares +=
+                u64::from(command.instants()[phase] == rounded.instants()[phase]);
         }
     }
 

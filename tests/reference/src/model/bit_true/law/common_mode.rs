@@ -1,9 +1,10 @@
 //! The common mode of three pulsed legs (sections 10 and 11).
 
+use super::Inputs;
 use crate::exact::{Coefficient, Word, all_three, both, greater, halve, lesser, within, word};
 use crate::model::bit_true::constants::{Constants, Scale};
-use crate::model::bit_true::limit::Limited;
-use crate::{CommonMode, Error, Spec};
+use crate::model::bit_true::limit::{self, Limited};
+use crate::{CommonMode, Error, Saturation, Spec};
 
 /// Policy and largest compare value.
 #[derive(Clone, Debug)]
@@ -91,10 +92,17 @@ impl<W: Word> CommonModeRule<W> {
         self.reach.at(v_bus)
     }
 
+    /// A voltage within the hexagon of these legs; `e`: the EMF of phases a, b.
+    #[inline]
+    pub fn limited(&self, now: &Inputs<W>, rule: Saturation, u: [W; 2], e: [W; 2]) -> Limited<W> {
+        let limited = limit::limit(rule, now.k, self.reach(now.v_bus), u, e);
+        self.readable(now.k, now.v_bus, &limited)
+    }
+
     /// Legs about the middle of the bus; where the highest need not be read, the second highest no higher than its
     /// sensor can be.
     #[inline]
-    pub fn readable(&self, k: &Constants<W>, v_bus: W, limited: &Limited<W>) -> Limited<W> {
+    fn readable(&self, k: &Constants<W>, v_bus: W, limited: &Limited<W>) -> Limited<W> {
         let &Limited { u, legs, reach } = limited;
         let [a, b, c] = legs;
         let middle = halve(greater(greater(a, b), c) + lesser(lesser(a, b), c));

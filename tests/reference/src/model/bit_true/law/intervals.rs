@@ -7,7 +7,7 @@ use crate::model::Reach;
 use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::{self, Limited};
 use crate::model::vectors::{self, FIRST_PAIR_ZERO};
-use crate::{AnyCommand, Error, Saturation, Spec, Zero};
+use crate::{AnyCommand, Error, Modulation, Saturation, Spec, Zero};
 use hexagen::{Intervals, LegState};
 
 /// The phase behind each, and the one before.
@@ -36,16 +36,21 @@ struct Vectors<W> {
 }
 
 impl<W: Word> Table2<W> {
-    pub fn new(
+    /// None with another modulation.
+    pub fn of(
         spec: &Spec,
+        modulation: Modulation,
         (saturation, zero): (Saturation, Zero),
         scale: &Scale,
-    ) -> Result<Self, Error> {
-        Ok(Self {
+    ) -> Result<Option<Self>, Error> {
+        if modulation != Modulation::Table2 {
+            return Ok(None);
+        }
+        Ok(Some(Self {
             saturation,
             zero,
             legs: CommonModeRule::of_vectors(spec, scale)?,
-        })
+        }))
     }
 
     #[inline]

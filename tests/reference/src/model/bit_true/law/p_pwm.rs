@@ -4,7 +4,7 @@ use super::common_mode::CommonModeRule;
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, word};
 use crate::model::bit_true::constants::Scale;
-use crate::model::bit_true::limit::{self, Limited};
+use crate::model::bit_true::limit::Limited;
 use crate::model::variant::reference_gain;
 use crate::{Error, Saturation, Spec};
 
@@ -29,20 +29,14 @@ impl<W: Word> PPwm<W> {
         // 9
         let u_unsat = both(|x| now.j[x] + self.k_drop.mul(now.i[x]) + now.e[x]);
         // 10, 11
-        let limited = limit::limit(
-            self.saturation,
-            now.k,
-            self.common_mode.reach(now.v_bus),
-            u_unsat,
-            now.e,
-        );
-        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, &limited);
+        let rule = &self.common_mode;
+        let Limited { u, legs, reach } = rule.limited(now, self.saturation, u_unsat, now.e);
         Decision {
             u_unsat,
             u,
             reach,
             vector: 0,
-            command: pulses::three(now, legs, [word(0.0); 3], &self.common_mode, false),
+            command: pulses::three(now, legs, [word(0.0); 3], rule, false),
             integral: now.integral,
             hysteresis: now.hysteresis,
             past: now.past,

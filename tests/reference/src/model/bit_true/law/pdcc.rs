@@ -7,7 +7,7 @@ use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
 use crate::exact::Word;
 use crate::model::bit_true::constants::Scale;
-use crate::model::bit_true::limit::{self, Limited};
+use crate::model::bit_true::limit::Limited;
 use crate::{Error, Modulation, Saturation, Spec};
 
 #[derive(Clone, Debug)]
@@ -30,9 +30,12 @@ impl<W: Word> Pdcc<W> {
             dead_time: DeadTime::new(spec, scale)?,
             common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
             of_pair: CommonModeRule::of_pair(spec, options.modulation == Modulation::Pair, scale)?,
-            table2: (options.modulation == Modulation::Table2)
-                .then(|| Table2::new(spec, (options.saturation, options.zero), scale))
-                .transpose()?,
+            table2: Table2::of(
+                spec,
+                options.modulation,
+                (options.saturation, options.zero),
+                scale,
+            )?,
         })
     }
 
@@ -40,32 +43,9 @@ impl<W: Word> Pdcc<W> {
     pub fn decide(&self, now: &Inputs<W>) -> Decision<W> {
         let u_unsat = self.form.voltage(now);
         let e = self.form.emf(now);
-        if let Some(table2) = &self.table2 {
-            let Modulated { u, reach, command } = table2.modulate(now, u_unsat, e);
-            return Decision {
-                u_unsat,
-                u,
-                reach,
-                vector: 0,
-                command,
-                integral: now.integral,
-                hysteresis: now.hysteresis,
-                past: self.form.past(now, u),
-            };
-        }
-        let limited = limit::limit(
-            self.saturation,
-            now.k,
-            self.common_mode.reach(now.v_bus),
-            u_unsat,
-            e,
-        );
-        let Limited { u, legs, reach } = self.common_mode.readable(now.k, now.v_bus, &limited);
-        let shifts = self.dead_time.shifts(now, self.form.kept(now));
-        let command = if self.pair && !now.commutating {
-            pulses::pair(now, u_unsat, shifts, &self.of_pair)
-        } else {
-            pulses::three(now, legs, shifts, &self.common_mode, self.pair)
+        let Modulated { u, reach, command } = match &self.table2 {
+            Some(table2) => table2.modulate(now, u_unsat, e),
+            None => self.pulses(now, u_unsat, e),
         };
         Decision {
             u_unsat,
@@ -77,5 +57,19 @@ impl<W: Word> Pdcc<W> {
             hysteresis: now.hysteresis,
             past: self.form.past(now, u),
         }
+    }
+
+    /// The limited voltage by pulses.
+    #[inline]
+    fn pulses(&self, now: &Inputs<W>, u_unsat: [W; 2], e: [W; 2]) -> Modulated<W> {
+        let rule = &self.common_mode;
+        let Limited { u, legs, reach } = rule.limited(now, self.saturation, u_unsat, e);
+        let shifts = self.dead_time.shifts(now, self.form.kept(now));
+        let command = if self.pair && !now.commutating {
+            pulses::pair(now, u_unsat, shifts, &self.of_pair)
+        } else {
+            pulses::three(now, legs, shifts, rule, self.pair)
+        };
+        Modulated { u, reach, command }
     }
 }

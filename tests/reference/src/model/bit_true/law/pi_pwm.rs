@@ -6,9 +6,9 @@ use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, halve, round_half_up, within, word};
 use crate::model::bit_true::constants::Scale;
-use crate::model::bit_true::limit::{self, Limited};
+use crate::model::bit_true::limit::Limited;
 use crate::model::{Reach, sector};
-use crate::{DiscretePhase, Error, Modulation, Saturation, Spec, Switch};
+use crate::{DiscretePhase, Error, Saturation, Spec, Switch};
 use std::f64::consts::TAU;
 
 #[derive(Clone, Debug)]
@@ -74,9 +74,12 @@ impl<W: Word> PiPwm<W> {
                 Switch::Off => CommonModeRule::new(spec, options.common_mode, scale)?,
             },
             integral_range,
-            table2: (options.modulation == Modulation::Table2)
-                .then(|| Table2::new(spec, (options.saturation, options.zero), scale))
-                .transpose()?,
+            table2: Table2::of(
+                spec,
+                options.modulation,
+                (options.saturation, options.zero),
+                scale,
+            )?,
         })
     }
 
@@ -125,15 +128,9 @@ impl<W: Word> PiPwm<W> {
     }
 
     /// The limited voltage by three pulses.
+    #[inline]
     fn pulses(&self, now: &Inputs<W>, u_unsat: [W; 2], flow: [W; 2]) -> Modulated<W> {
-        let limited = limit::limit(
-            self.saturation,
-            now.k,
-            self.legs.reach(now.v_bus),
-            u_unsat,
-            now.e,
-        );
-        let Limited { u, legs, reach } = self.legs.readable(now.k, now.v_bus, &limited);
+        let Limited { u, legs, reach } = self.legs.limited(now, self.saturation, u_unsat, now.e);
         let shifts = self.dead_time.shifts(now, flow);
         let command = pulses::three(now, legs, shifts, &self.legs, false);
         Modulated { u, reach, command }

@@ -1,7 +1,10 @@
 //! The common mode of three pulsed legs (sections 10 and 11).
 
-use crate::{CommonMode, Error, Spec};
-use nalgebra::Vector3;
+use super::Inputs;
+use crate::model::ideal::limit::{Limited, limit};
+use crate::model::ideal::vector::phases;
+use crate::{CommonMode, Error, Saturation, Spec};
+use nalgebra::{Vector2, Vector3};
 
 /// Policy and largest duty.
 #[derive(Clone, Copy, Debug)]
@@ -51,8 +54,23 @@ impl CommonModeRule {
         }
     }
 
+    /// A voltage within the hexagon of these legs; `e`: the EMF.
+    pub fn limited(
+        self,
+        now: &Inputs,
+        rule: Saturation,
+        u: &Vector2<f64>,
+        e: &Vector2<f64>,
+    ) -> Limited {
+        let limited = limit(rule, &phases(u), &phases(e), self.reach(now.v_bus));
+        Limited {
+            u: self.readable(&limited.u, now.v_bus),
+            ..limited
+        }
+    }
+
     /// Phase voltages of which the second highest is where its leg's sensor can be read.
-    pub fn readable(self, u: &Vector3<f64>, v_bus: f64) -> Vector3<f64> {
+    fn readable(self, u: &Vector3<f64>, v_bus: f64) -> Vector3<f64> {
         let most = u.min() + self.second * v_bus;
         let above = second(u) - most;
         if above <= 0.0 || self.second >= self.top {

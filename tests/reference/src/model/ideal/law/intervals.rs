@@ -8,7 +8,7 @@ use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases};
 use crate::model::sector::OUT_PHASE;
 use crate::model::vectors::{self, FIRST_PAIR, FIRST_PAIR_ZERO};
-use crate::{Error, Saturation, Spec, Zero};
+use crate::{Error, Modulation, Saturation, Spec, Zero};
 use hexagen::LegState;
 use nalgebra::{Rotation2, Vector2};
 use std::f64::consts::{FRAC_PI_3, FRAC_PI_6, TAU};
@@ -28,12 +28,20 @@ pub struct Modulated {
 }
 
 impl Table2 {
-    pub fn new(spec: &Spec, (saturation, zero): (Saturation, Zero)) -> Result<Self, Error> {
-        Ok(Self {
+    /// None with another modulation.
+    pub fn of(
+        spec: &Spec,
+        modulation: Modulation,
+        (saturation, zero): (Saturation, Zero),
+    ) -> Result<Option<Self>, Error> {
+        if modulation != Modulation::Table2 {
+            return Ok(None);
+        }
+        Ok(Some(Self {
             saturation,
             zero,
             legs: CommonModeRule::of_vectors(spec)?,
-        })
+        }))
     }
 
     pub fn modulate(&self, now: &Inputs, u: &Vector2<f64>, e: &Vector2<f64>) -> Modulated {

@@ -2,8 +2,7 @@
 
 use super::common_mode::CommonModeRule;
 use super::{Decision, Inputs, pulses};
-use crate::model::ideal::limit;
-use crate::model::ideal::vector::{clarke, phases, to_ab};
+use crate::model::ideal::vector::{clarke, to_ab};
 use crate::model::variant::reference_gain;
 use crate::{Error, Saturation, Spec};
 
@@ -26,19 +25,14 @@ impl PPwm {
 
     pub fn decide(&self, now: &Inputs) -> Decision {
         let u_unsat = (now.i_ref - now.i) * self.k_p + now.e;
-        let limited = limit::limit(
-            self.saturation,
-            &phases(&u_unsat),
-            &phases(&now.e),
-            self.common_mode.reach(now.v_bus),
-        );
-        let legs = self.common_mode.readable(&limited.u, now.v_bus);
+        let rule = self.common_mode;
+        let limited = rule.limited(now, self.saturation, &u_unsat, &now.e);
         Decision {
             u_unsat,
-            u: clarke(&legs),
+            u: clarke(&limited.u),
             reach: limited.reach,
             vector: 0,
-            command: pulses::three(now, &legs, &[0.0; 3].into(), self.common_mode),
+            command: pulses::three(now, &limited.u, &[0.0; 3].into(), rule),
             integral: to_ab(&now.integral),
             rises: now.rises,
             past: now.past,

@@ -4,9 +4,9 @@ use super::common_mode::CommonModeRule;
 use super::dead_time::{DeadTime, kept_by_deadbeat};
 use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, deadbeat, pulses};
-use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
 use crate::{Error, Modulation, Spec};
+use nalgebra::Vector2;
 
 #[derive(Clone, Copy, Debug)]
 pub struct Pdcc {
@@ -27,53 +27,46 @@ impl Pdcc {
             dead_time: DeadTime::new(spec),
             common_mode: CommonModeRule::new(spec, options.common_mode)?,
             of_pair: CommonModeRule::of_vectors(spec)?,
-            table2: (options.modulation == Modulation::Table2)
-                .then(|| Table2::new(spec, (options.saturation, options.zero)))
-                .transpose()?,
+            table2: Table2::of(spec, options.modulation, (options.saturation, options.zero))?,
             v_largest: spec.inverter.v_bus_max()?,
         })
     }
 
     pub fn decide(&self, now: &Inputs) -> Decision {
-        let options = &self.options;
-        let shifts = self.dead_time.shifts(now, kept_by_deadbeat(now));
         let u_unsat = deadbeat::voltage(now);
         let e = deadbeat::emf(now, self.v_largest);
-        if let Some(table2) = &self.table2 {
-            let Modulated { u, reach, command } = table2.modulate(now, &u_unsat, &e);
-            return Decision {
-                u_unsat,
-                u,
-                reach,
-                vector: 0,
-                command,
-                integral: to_ab(&now.integral),
-                rises: now.rises,
-                past: deadbeat::past(now, &u),
-            };
-        }
-        let limited = limit::limit(
-            options.saturation,
-            &phases(&u_unsat),
-            &phases(&e),
-            self.common_mode.reach(now.v_bus),
-        );
-        let legs = self.common_mode.readable(&limited.u, now.v_bus);
-        let command = if options.modulation == Modulation::Pair && !now.commutating {
-            pulses::pair(now, &phases(&u_unsat), &shifts, self.of_pair)
-        } else {
-            pulses::three(now, &legs, &shifts, self.common_mode)
+        let Modulated { u, reach, command } = match &self.table2 {
+            Some(table2) => table2.modulate(now, &u_unsat, &e),
+            None => self.pulses(now, &u_unsat, &e),
         };
-        let u = clarke(&legs);
         Decision {
             u_unsat,
             u,
-            reach: limited.reach,
+            reach,
             vector: 0,
             command,
             integral: to_ab(&now.integral),
             rises: now.rises,
             past: deadbeat::past(now, &u),
+        }
+    }
+
+    /// The limited voltage by pulses.
+    fn pulses(&self, now: &Inputs, u_unsat: &Vector2<f64>, e: &Vector2<f64>) -> Modulated {
+        let options = &self.options;
+        let limited = self
+            .common_mode
+            .limited(now, options.saturation, u_unsat, e);
+        let shifts = self.dead_time.shifts(now, kept_by_deadbeat(now));
+        let command = if options.modulation == Modulation::Pair && !now.commutating {
+            pulses::pair(now, &phases(u_unsat), &shifts, self.of_pair)
+        } else {
+            pulses::three(now, &limited.u, &shifts, self.common_mode)
+        };
+        Modulated {
+            u: clarke(&limited.u),
+            reach: limited.reach,
+            command,
         }
     }
 }

@@ -4,11 +4,10 @@ use super::common_mode::CommonModeRule;
 use super::dead_time::DeadTime;
 use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
-use crate::model::ideal::limit;
 use crate::model::ideal::vector::{clarke, phases, to_ab};
 use crate::model::variant::Variant;
 use crate::model::{Reach, sector};
-use crate::{Error, Modulation, Saturation, Spec, Switch};
+use crate::{Error, Saturation, Spec, Switch};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
@@ -45,9 +44,7 @@ impl PiPwm {
                 Switch::Off => CommonModeRule::new(spec, options.common_mode)?,
             },
             integral_max: spec.inverter.v_bus_max()?,
-            table2: (options.modulation == Modulation::Table2)
-                .then(|| Table2::new(spec, (options.saturation, options.zero)))
-                .transpose()?,
+            table2: Table2::of(spec, options.modulation, (options.saturation, options.zero))?,
         })
     }
 
@@ -82,18 +79,12 @@ impl PiPwm {
 
     /// The limited voltage by three pulses.
     fn pulses(&self, now: &Inputs, u_unsat: &Vector2<f64>) -> Modulated {
-        let limited = limit::limit(
-            self.saturation,
-            &phases(u_unsat),
-            &phases(&now.e),
-            self.legs.reach(now.v_bus),
-        );
-        let legs = self.legs.readable(&limited.u, now.v_bus);
+        let limited = self.legs.limited(now, self.saturation, u_unsat, &now.e);
         let shifts = self.dead_time.shifts(now, 1.0);
         Modulated {
-            u: clarke(&legs),
+            u: clarke(&limited.u),
             reach: limited.reach,
-            command: pulses::three(now, &legs, &shifts, self.legs),
+            command: pulses::three(now, &limited.u, &shifts, self.legs),
         }
     }
 
