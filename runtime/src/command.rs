@@ -35,10 +35,8 @@ pub trait Command: Copy + 'static {
     /// Timer counts for which the upper switches of legs a, b, c are on; `None` for a leg that is
     /// off for the whole period.
     fn on(self) -> [Option<u16>; 3];
-    /// All that a command holds: the compare values of legs a, b, c, or the ends of two intervals and 0,
-    /// timer counts; then the states of the legs, or those in three intervals, two bits per leg, a's
-    /// lowest. Unused words are 0. For verification.
-    fn words(self) -> [u16; 6];
+    /// All that a command holds, as a word of 64 bits. For verification.
+    fn to_bits(self) -> u64;
 }
 
 /// Compare values for a centre-aligned timer and a state per leg.
@@ -138,9 +136,8 @@ impl Command for Legs {
     }
 
     #[inline]
-    fn words(self) -> [u16; 6] {
-        let [a, b, c] = self.compare();
-        [a, b, c, self.states(), 0, 0]
+    fn to_bits(self) -> u64 {
+        self.0
     }
 }
 
@@ -178,7 +175,7 @@ impl defmt::Format for Legs {
 /// The first two end at an instant, 0 to `TIMER_PERIOD` counts behind the beginning of the PWM period,
 /// the second not before the first; the third ends with the period. One count is 1/`TIMER_PERIOD` of the
 /// PWM period: two clocks of a centre-aligned timer, whose count goes up and down. The third interval is a zero
-/// vector: there a pulsed leg counts as low.
+/// vector: there a pulsed leg counts as low. The whole command is one 64-bit word, as that of [`Legs`].
 ///
 /// ```
 /// use hexagen::{Command, Intervals, LegState};
@@ -189,10 +186,8 @@ impl defmt::Format for Legs {
 /// assert_eq!(two.on(), [Some(1500), Some(0), Some(0)]);
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Intervals {
-    ends: [u16; 2],
-    states: [u16; 3],
-}
+#[repr(transparent)]
+pub struct Intervals(u64);
 
 impl Intervals {
     /// All legs off for the whole period: the safe command of a tripped drive.
@@ -203,20 +198,17 @@ impl Intervals {
     #[inline]
     #[must_use]
     pub const fn new(ends: [u16; 2], [first, second, third]: [[LegState; 3]; 3]) -> Self {
-        let states = [
-            packed(first) as u16,
-            packed(second) as u16,
-            packed(third) as u16,
-        ];
-        Self::of_states(ends, states)
+        Self::of_states(ends, [packed(first), packed(second), packed(third)])
     }
 
     /// Ends of the first two intervals, timer counts, and [`states`](Self::states): of each leg 0, 1 or 2 as
     /// of [`LegState`], 3 counts as 2; bits from 6 on have no effect.
     #[inline]
     #[must_use]
-    pub const fn of_states(ends: [u16; 2], states: [u16; 3]) -> Self {
-        Self { ends, states }
+    pub const fn of_states([end, next_end]: [u16; 2], [one, two, three]: [u16; 3]) -> Self {
+        let low = end as u32 | (next_end as u32) << 16;
+        let high = one as u32 & 63 | (two as u32 & 63) << 8 | (three as u32 & 63) << 16;
+        Self(low as u64 | (high as u64) << 32)
     }
 
     /// All legs in the same state for the whole period.
@@ -230,14 +222,14 @@ impl Intervals {
     #[inline]
     #[must_use]
     pub const fn ends(self) -> [u16; 2] {
-        self.ends
+        [self.0 as u16, (self.0 >> 16) as u16]
     }
 
     /// States of legs a, b, c in each interval.
     #[inline]
     #[must_use]
     pub const fn state(self) -> [[LegState; 3]; 3] {
-        let [first, second, third] = self.states;
+        let [first, second, third] = self.states();
         [unpacked(first), unpacked(second), unpacked(third)]
     }
 
@@ -246,7 +238,26 @@ impl Intervals {
     #[inline]
     #[must_use]
     pub const fn states(self) -> [u16; 3] {
-        self.states
+        let states = (self.0 >> 32) as u32;
+        [
+            (states & 63) as u16,
+            (states >> 8 & 63) as u16,
+            (states >> 16 & 63) as u16,
+        ]
+    }
+
+    /// The word: ends in 16 bits each from the lowest on, then [`states`](Self::states) in 8 bits each.
+    #[inline]
+    #[must_use]
+    pub const fn to_bits(self) -> u64 {
+        self.0
+    }
+
+    /// The intervals with the bits of [`to_bits`](Self::to_bits).
+    #[inline]
+    #[must_use]
+    pub const fn from_bits(bits: u64) -> Self {
+        Self(bits)
     }
 }
 
@@ -257,7 +268,7 @@ impl Command for Intervals {
     }
 
     fn on(self) -> [Option<u16>; 3] {
-        let [first, second] = self.ends;
+        let [first, second] = self.ends();
         let lengths = [first, second.saturating_sub(first)];
         let [one, two, three] = self.state();
         let on = |one: LegState, two: LegState, three: LegState| {
@@ -273,21 +284,16 @@ impl Command for Intervals {
     }
 
     #[inline]
-    fn words(self) -> [u16; 6] {
-        let ([first, second], [one, two, three]) = (self.ends, self.states);
-        [first, second, 0, one, two, three]
+    fn to_bits(self) -> u64 {
+        self.0
     }
 }
 
 impl core::fmt::Debug for Intervals {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let [first, second, third] = self.states;
         f.debug_struct("Intervals")
-            .field("ends", &self.ends)
-            .field(
-                "state",
-                &[unpacked(first), unpacked(second), unpacked(third)],
-            )
+            .field("ends", &self.ends())
+            .field("state", &self.state())
             .finish()
     }
 }
@@ -306,8 +312,8 @@ impl defmt::Format for Intervals {
 
 /// States of legs a, b, c in two bits each, a's lowest.
 #[inline]
-const fn packed([a, b, c]: [LegState; 3]) -> u32 {
-    a as u32 | (b as u32) << 2 | (c as u32) << 4
+const fn packed([a, b, c]: [LegState; 3]) -> u16 {
+    a as u16 | (b as u16) << 2 | (c as u16) << 4
 }
 
 /// The legs' states in a word of [`packed`].

@@ -119,9 +119,12 @@ fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box
         let of_readings = readings::READINGS
             .iter()
             .flat_map(|readings| [readings.literal, readings.corrected].map(str::to_owned));
-        // Some readings are rows of the table.
+        let of_improvements = readings::IMPROVEMENTS
+            .iter()
+            .map(|improvement| improvement.variant.to_owned());
+        // Some are rows of the table, or have a kind's defaults.
         let mut known = BTreeSet::new();
-        for variant in of_table.chain(of_readings) {
+        for variant in of_table.chain(of_readings).chain(of_improvements) {
             if known.insert(normalised(file, &variant)?) {
                 builder = builder.controller(variant);
             }

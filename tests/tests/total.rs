@@ -295,13 +295,13 @@ proptest! {
     ) {
         let [state, ..] = states;
         for legs in [Legs::new(compare, state), Legs::from_bits(bits), Legs::at_rest(state[0])] {
-            black_box((legs.compare(), legs.state(), legs.states(), legs.on(), legs.words(), format!("{legs:?}")));
+            black_box((legs.compare(), legs.state(), legs.states(), legs.on(), format!("{legs:?}")));
         }
         let [first, second, third] = compare;
         let coded = Intervals::of_states([first, second], [second, third, first]);
-        for intervals in [Intervals::new([first, second], states), coded] {
+        for intervals in [Intervals::new([first, second], states), coded, Intervals::from_bits(bits)] {
             black_box((intervals.ends(), intervals.states(), intervals.state()));
-            black_box((intervals.on(), intervals.words(), format!("{intervals:?}")));
+            black_box((intervals.on(), format!("{intervals:?}")));
         }
         black_box(Intervals::at_rest(state[0]).on());
     }

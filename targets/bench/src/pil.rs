@@ -195,18 +195,13 @@ pub fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option
         );
     };
     let sides = [answer.bytes.as_slice(), found];
-    for (phase, name) in ["compare_a", "compare_b", "compare_c"]
-        .into_iter()
-        .enumerate()
-    {
-        line(name, sides.map(|bytes| number::<2>(bytes, 2 * phase)));
+    // Of pulses the halves are the compare values of a, b, c and the states of the legs; of intervals their
+    // ends, and states.
+    for half in 0..4 {
+        let name = format!("command_{half}");
+        line(&name, sides.map(|bytes| number::<2>(bytes, 2 * half)));
     }
-    for (leg, name) in ["state_a", "state_b", "state_c", "fault"]
-        .into_iter()
-        .enumerate()
-    {
-        line(name, sides.map(|bytes| number::<1>(bytes, 6 + leg)));
-    }
+    line("fault", sides.map(|bytes| number::<1>(bytes, 8)));
     for (index, name) in names.iter().enumerate() {
         line(
             name,
@@ -305,8 +300,8 @@ pub mod tests {
     }
 
     /// Flips the lowest bit of `i_b_prev` once, after step 12345 of each replay.
-    extern "C" fn wrong_state(drive: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
-        let legs = step_of_the_test(drive, a, b, hall, ticks);
+    extern "C" fn wrong_state(drive: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> u64 {
+        let command = step_of_the_test(drive, a, b, hall, ticks);
         let call = CALLS.get();
         CALLS.set(call + 1);
         if call == 12_345 {
@@ -317,18 +312,18 @@ pub mod tests {
             drive.state_words(&mut words);
             drive.set_state_word(index, words[index] ^ 1);
         }
-        legs
+        command
     }
 
     /// One compare value one count too high, in step 777.
-    extern "C" fn wrong_output(drive: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
-        let legs = step_of_the_test(drive, a, b, hall, ticks);
+    extern "C" fn wrong_output(drive: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> u64 {
+        let command = step_of_the_test(drive, a, b, hall, ticks);
         let call = CALLS.get();
         CALLS.set(call + 1);
         if call == 777 {
-            return Legs::from_bits(legs.to_bits() ^ 1 << 32);
+            return command ^ 1 << 32;
         }
-        legs
+        command
     }
 
     /// The report of a core whose call counter restarts in each of its replays.
@@ -389,6 +384,6 @@ pub mod tests {
             .filter(|line| line.starts_with('*'))
             .collect();
         assert_eq!(marked.len(), 1, "{report}");
-        assert!(marked[0].starts_with("* compare_c"), "{report}");
+        assert!(marked[0].starts_with("* command_2"), "{report}");
     }
 }

@@ -7,7 +7,7 @@
 
 use crate::BenchError;
 use crate::listing::Listed;
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Command as _, Fault, Sample};
 use hexagen_firmware::wire::{BLOCK, Digest, Record, encode_outputs};
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, Delay};
 use hexagen_lab::engine::{MotorSource, Prepared, plant_of, prepare};
@@ -92,7 +92,7 @@ pub trait Called {
     fn call(&mut self, record: Record);
 
     /// A control period.
-    fn step(&mut self, sample: Sample) -> Legs;
+    fn step(&mut self, sample: Sample) -> AnyCommand;
 }
 
 /// The stretches of a run in closed loop, always the same ones: start-up at standstill, then speeds
@@ -206,7 +206,7 @@ struct InLoop<'c, C>(&'c mut C);
 
 impl<C: Called> CurrentLoop for InLoop<'_, C> {
     fn step(&mut self, sample: &Sample, _: &Truth) -> AnyCommand {
-        self.0.step(*sample).into()
+        self.0.step(*sample)
     }
 }
 
@@ -242,9 +242,8 @@ impl Called for OnHost<'_> {
         }
     }
 
-    fn step(&mut self, sample: Sample) -> Legs {
-        // The firmware takes pulses only.
-        self.subject.step(&sample).legs().unwrap_or_default()
+    fn step(&mut self, sample: Sample) -> AnyCommand {
+        self.subject.step(&sample)
     }
 }
 
@@ -346,8 +345,8 @@ impl<'g> Recorder<'g> {
                 // Nor do vectors coast or brake.
                 Some(Action::Stop(_)) | None => {}
             }
-            let legs = self.step(sample);
-            stimulus.respond(legs.into());
+            let command = self.step(sample);
+            stimulus.respond(command);
         }
         Ok(())
     }
@@ -359,13 +358,13 @@ impl Called for Recorder<'_> {
         self.host.call(record);
     }
 
-    fn step(&mut self, sample: Sample) -> Legs {
+    fn step(&mut self, sample: Sample) -> AnyCommand {
         let sample = self.recorded(sample);
         self.note(Record::Step(sample));
-        let legs = self.host.step(sample);
+        let command = self.host.step(sample);
         let fault = self.host.subject.fault();
         self.host.subject.state_words(&mut self.words);
-        self.digest.answer(legs, fault);
+        self.digest.answer(command.to_bits(), fault);
         for &word in &self.words {
             self.digest.word(word as u32);
         }
@@ -374,13 +373,13 @@ impl Called for Recorder<'_> {
             self.vectors.full.push(Answer {
                 sample,
                 step: self.vectors.steps,
-                bytes: encode_outputs(legs, fault)
+                bytes: encode_outputs(command.to_bits(), fault)
                     .into_iter()
                     .chain(words)
                     .collect(),
             });
         }
         self.vectors.steps += 1;
-        legs
+        command
     }
 }

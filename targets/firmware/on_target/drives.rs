@@ -32,6 +32,20 @@ macro_rules! drives_for {
             HubPdccHallLearning, step_hoverboard_hub_pdcc_hall_learning:
                 "../motors/hoverboard-hub.toml", pdcc { hall_learning: on };
 
+            // The paper's modulator, whose command has three intervals.
+            TrivediPdccTable2, step_trivedi_keshri_660w_pdcc_table2:
+                "../motors/trivedi-keshri-660w.toml",
+                pdcc {
+                    reference: quasi_square, saturation: keep_angle, emf: held, modulation: table2,
+                    target: $target
+                };
+            TrivediPiPwmTable2, step_trivedi_keshri_660w_pi_pwm_table2:
+                "../motors/trivedi-keshri-660w.toml",
+                pi_pwm {
+                    reference: quasi_square, saturation: keep_angle, feed_forward: off,
+                    modulation: table2, target: $target
+                };
+
             // The variants of the cost table's goals, each with the core's word length.
             TrivediPdccKeepAngle, step_trivedi_keshri_660w_pdcc_keep_angle:
                 "../motors/trivedi-keshri-660w.toml",

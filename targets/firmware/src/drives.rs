@@ -8,9 +8,9 @@ use hexagen::{Control, LegState, Legs, Sample, State, Supervisor};
 #[derive(Debug)]
 pub enum StepFn<D> {
     /// Takes the drive, counts of phases a and b, the Hall code, and ticks since the last Hall
-    /// edge, or in place of these two the upper 24 bits of an angle ([`sample_of`]); returns its legs
-    /// as a 64-bit word in registers.
-    Bits(extern "C" fn(&mut D, u16, u16, u8, u16) -> Legs),
+    /// edge, or in place of these two the upper 24 bits of an angle ([`sample_of`]); returns the bits of
+    /// its command in registers.
+    Bits(extern "C" fn(&mut D, u16, u16, u8, u16) -> u64),
     /// Takes the sample and returns the legs in C99's layout, both in the caller's memory.
     Structure(extern "C" fn(&mut D, &SampleInC) -> LegsInC),
 }
@@ -25,8 +25,8 @@ impl<D> Clone for StepFn<D> {
 impl<D> Copy for StepFn<D> {}
 
 impl<D> StepFn<D> {
-    /// One step.
-    pub fn call(self, drive: &mut D, sample: Sample) -> Legs {
+    /// One step; returns the bits of its command.
+    pub fn call(self, drive: &mut D, sample: Sample) -> u64 {
         match self {
             Self::Bits(step) => {
                 let [adc_a, adc_b, _] = sample.adc();
@@ -34,7 +34,7 @@ impl<D> StepFn<D> {
             }
             Self::Structure(step) => {
                 let legs = step(drive, &sample.into());
-                Legs::new(legs.compare, legs.state)
+                Legs::new(legs.compare, legs.state).to_bits()
             }
         }
     }
@@ -170,8 +170,9 @@ macro_rules! drives {
                 adc_b: u16,
                 hall: u8,
                 hall_ticks: u16,
-            ) -> $crate::hexagen::Legs {
-                drive.step(&$crate::sample_of::<$name>([adc_a, adc_b], hall, hall_ticks))
+            ) -> u64 {
+                let sample = $crate::sample_of::<$name>([adc_a, adc_b], hall, hall_ticks);
+                $crate::hexagen::Command::to_bits(drive.step(&sample))
             }
 
         )*

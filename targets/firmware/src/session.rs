@@ -7,7 +7,7 @@ use crate::peers::Peer;
 use crate::subject::{MOST_WORDS, Subject};
 use crate::supervised::{Supervised, step_supervised};
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
-use hexagen::{Control, Drive, Legs, Sample};
+use hexagen::{Control, Drive, Sample};
 
 /// Serves one task on the drives of this firmware.
 ///
@@ -30,8 +30,8 @@ pub fn serve(link: &mut dyn Link, drives: Drives) -> Result<(), Broken> {
 ///
 /// # Errors
 /// If the exchange ends early.
-pub fn replay_drive<C: Control<Command = Legs>>(
-    step: extern "C" fn(&mut Drive<C>, u16, u16, u8, u16) -> Legs,
+pub fn replay_drive<C: Control>(
+    step: extern "C" fn(&mut Drive<C>, u16, u16, u8, u16) -> u64,
     link: &mut dyn Link,
     task: &Task,
 ) -> Result<(), Broken> {
@@ -158,7 +158,8 @@ impl<D: Subject> Replayed<D> {
         Ok(None)
     }
 
-    fn step(&mut self, sample: Sample) -> Legs {
+    /// One step; returns the bits of its command.
+    fn step(&mut self, sample: Sample) -> u64 {
         self.step.call(&mut self.drive, sample)
     }
 
@@ -175,8 +176,8 @@ impl<D: Subject> Replayed<D> {
             let Some(sample) = self.sample(record)? else {
                 continue;
             };
-            let legs = self.step(sample);
-            digest.answer(legs, self.drive.fault());
+            let command = self.step(sample);
+            digest.answer(command, self.drive.fault());
             for &word in self.state_words(&mut words) {
                 digest.word(word as u32);
             }
@@ -190,8 +191,8 @@ impl<D: Subject> Replayed<D> {
             let Some(sample) = self.sample(record)? else {
                 continue;
             };
-            let legs = self.step(sample);
-            link.write(&encode_outputs(legs, self.drive.fault()))?;
+            let command = self.step(sample);
+            link.write(&encode_outputs(command, self.drive.fault()))?;
             for word in self.state_words(&mut words) {
                 link.write(&word.to_le_bytes())?;
             }

@@ -1,7 +1,7 @@
 //! A drive for replay, in Rust or in C.
 
 use hexagen::fixed::types::I16F16;
-use hexagen::{Control, Drive, Fault, Legs, State, Supervisor};
+use hexagen::{Control, Drive, Fault, State, Supervisor};
 
 /// Maximum number of state words of a drive.
 pub(crate) const MOST_WORDS: usize = 64;
@@ -35,7 +35,7 @@ pub trait Subject {
     fn set_state_word(&mut self, index: usize, value: i32);
 }
 
-impl<C: Control<Command = Legs>> Subject for Drive<C> {
+impl<C: Control> Subject for Drive<C> {
     const WORDS: usize = Supervisor::NAMES.len() + C::State::NAMES.len();
 
     fn new() -> Self {

@@ -4,7 +4,7 @@ use crate::drives::sample_of;
 use core::marker::PhantomData;
 use hexagen::arith::Word;
 use hexagen::{
-    AngleSensor, Bus, Checked, Control, Drive, Format, LegState, Legs, Limits, Observation,
+    AngleSensor, Bus, Checked, Command, Control, Drive, Format, LegState, Limits, Observation,
     Sensors, Units, Words,
 };
 
@@ -19,7 +19,7 @@ pub struct Nothing {}
 impl<C: Control> Control for Supervised<C> {
     type State = Nothing;
     type Rotor = ();
-    type Command = Legs;
+    type Command = C::Command;
     type Bus = C::Bus;
 
     const NAME: &'static str = C::NAME;
@@ -49,18 +49,25 @@ impl<C: Control> Control for Supervised<C> {
     fn rest(_: &mut Nothing, _: &Checked, (): ()) {}
 
     #[inline]
-    fn step(_: &mut Nothing, _: &Words<Self>, _: &Checked, (): (), _: &mut Observation) -> Legs {
-        const { Legs::new([0; 3], [LegState::Pulsed; 3]) }
+    fn step(
+        _: &mut Nothing,
+        _: &Words<Self>,
+        _: &Checked,
+        (): (),
+        _: &mut Observation,
+    ) -> C::Command {
+        Command::at_rest(LegState::Pulsed)
     }
 }
 
 /// One control period of such a drive, called like a step function.
-pub extern "C" fn step_supervised<C: Control<Command = Legs>>(
+pub extern "C" fn step_supervised<C: Control>(
     drive: &mut Drive<C>,
     adc_a: u16,
     adc_b: u16,
     hall: u8,
     hall_ticks: u16,
-) -> Legs {
-    drive.step(&sample_of::<C>([adc_a, adc_b], hall, hall_ticks))
+) -> u64 {
+    let sample = sample_of::<C>([adc_a, adc_b], hall, hall_ticks);
+    drive.step(&sample).to_bits()
 }

@@ -1,7 +1,7 @@
 //! The counter on hosts, where sessions run in tests: there is none.
 
 use crate::drives::StepFn;
-use hexagen::{Legs, Sample};
+use hexagen::Sample;
 
 /// Instructions of one call: unknown.
 pub fn count<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<u32> {
@@ -15,8 +15,8 @@ pub fn trace<D>(_: StepFn<D>, _: &mut D, _: Sample) -> Option<()> {
 
 /// An interrupt's function as a step.
 pub fn interrupt_step(_: extern "C" fn()) -> StepFn<()> {
-    extern "C" fn nothing(_: &mut (), _: u16, _: u16, _: u8, _: u16) -> Legs {
-        Legs::OFF
+    extern "C" fn nothing(_: &mut (), _: u16, _: u16, _: u8, _: u16) -> u64 {
+        0
     }
     StepFn::Bits(nothing)
 }

@@ -3,7 +3,7 @@
 //! All numbers are little-endian. A task is one header and records up to the end of the input; the
 //! core answers each block of records, and the rest at the end, according to the task's mode.
 
-use hexagen::{Fault, Legs, Sample};
+use hexagen::{Fault, Sample};
 
 /// Bytes of a record.
 pub const RECORD: usize = 8;
@@ -14,8 +14,8 @@ pub const BLOCK: usize = 512;
 /// Bytes of a task's header.
 pub const HEADER: usize = 12;
 
-/// Bytes of a full answer, besides four per state word: compare values, leg states, fault.
-pub const ANSWER: usize = 10;
+/// Bytes of a full answer, besides four per state word: command, fault.
+pub const ANSWER: usize = 9;
 
 /// First byte of a step's record.
 pub const STEP_RECORD: u8 = 1;
@@ -205,16 +205,15 @@ impl Digest {
         ];
     }
 
-    /// Adds the command of a step.
-    pub fn command(&mut self, legs: Legs) {
-        for (compare, state) in legs.compare().into_iter().zip(legs.state()) {
-            self.word(u32::from(compare) | (state as u32) << 16);
-        }
+    /// Adds the bits of a step's command.
+    pub fn command(&mut self, bits: u64) {
+        self.word(bits as u32);
+        self.word((bits >> 32) as u32);
     }
 
-    /// Adds the outputs of a step.
-    pub fn answer(&mut self, legs: Legs, fault: Option<Fault>) {
-        self.command(legs);
+    /// Adds the outputs of a step, its command in bits.
+    pub fn answer(&mut self, command: u64, fault: Option<Fault>) {
+        self.command(command);
         self.word(u32::from(number(fault)));
     }
 
@@ -233,10 +232,9 @@ fn number(fault: Option<Fault>) -> u8 {
     fault.map_or(0, |fault| fault as u8)
 }
 
-/// A step's outputs as bytes; its state words follow.
+/// A step's outputs as bytes: the bits of its command, and its fault; its state words follow.
 #[must_use]
-pub fn encode_outputs(legs: Legs, fault: Option<Fault>) -> [u8; ANSWER] {
-    let [[a0, a1], [b0, b1], [c0, c1]] = legs.compare().map(u16::to_le_bytes);
-    let [a, b, c] = legs.state().map(|state| state as u8);
-    [a0, a1, b0, b1, c0, c1, a, b, c, number(fault)]
+pub fn encode_outputs(command: u64, fault: Option<Fault>) -> [u8; ANSWER] {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = command.to_le_bytes();
+    [c0, c1, c2, c3, c4, c5, c6, c7, number(fault)]
 }

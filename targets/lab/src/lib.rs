@@ -40,5 +40,5 @@ pub use error::LabError;
 pub use inputs::Inputs;
 pub use interpreted::Interpreted;
 pub use progress::Progress;
-pub use readings::{READINGS, Readings};
+pub use readings::{IMPROVEMENTS, Improvement, READINGS, Readings};
 pub use tables::{angle, formats, limits, sensors, state_names};

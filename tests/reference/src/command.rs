@@ -15,15 +15,32 @@ impl AnyCommand {
     /// Compare values of legs a, b, c, or the ends of the first two intervals and 0; timer counts.
     #[inline]
     pub fn instants(self) -> [u16; 3] {
-        let [first, second, third, ..] = self.words();
-        [first, second, third]
+        match self {
+            Self::Legs(legs) => legs.compare(),
+            Self::Intervals(intervals) => {
+                let [first, second] = intervals.ends();
+                [first, second, 0]
+            }
+        }
     }
 
-    /// States of the legs, two bits each: of the whole period, or in each interval.
+    /// States of the legs, two bits each: of the whole period and two zeros, or in each interval.
     #[inline]
     pub fn states(self) -> [u16; 3] {
-        let [.., first, second, third] = self.words();
-        [first, second, third]
+        match self {
+            Self::Legs(legs) => [legs.states(), 0, 0],
+            Self::Intervals(intervals) => intervals.states(),
+        }
+    }
+
+    /// Pulses or intervals with these bits.
+    #[inline]
+    pub fn from_bits(bits: u64, has_intervals: bool) -> Self {
+        if has_intervals {
+            Intervals::from_bits(bits).into()
+        } else {
+            Legs::from_bits(bits).into()
+        }
     }
 
     /// States of legs a, b, c, in the first interval.
@@ -126,10 +143,10 @@ impl Command for AnyCommand {
     }
 
     #[inline]
-    fn words(self) -> [u16; 6] {
+    fn to_bits(self) -> u64 {
         match self {
-            Self::Legs(legs) => legs.words(),
-            Self::Intervals(intervals) => intervals.words(),
+            Self::Legs(legs) => legs.to_bits(),
+            Self::Intervals(intervals) => intervals.to_bits(),
         }
     }
 }

@@ -16,7 +16,7 @@ pub use stimulus::{Action, Context, Stimulus, Stream};
 pub use subject::{Compiled, Subject};
 
 use crate::{AnyCommand, BitTrue, FormatTable, Mode, Spec};
-use hexagen::{Command, Control, Drive, Fault, Format, Sample};
+use hexagen::{Control, Drive, Fault, Format, Sample};
 
 /// Steps that [`assert_bit_true`] runs.
 pub const DEFAULT_STEPS: u64 = 500_000;
@@ -211,7 +211,10 @@ impl<S: Subject> Pair<S> {
             AnyCommand::Legs(_) => ["compare_a", "compare_b", "compare_c", "states", "", ""],
             AnyCommand::Intervals(_) => ["end_1", "end_2", "", "states_1", "states_2", "states_3"],
         };
-        let [found_words, expected_words] = [found, expected].map(Command::words);
+        let [found_words, expected_words] = [found, expected].map(|command| {
+            let ([a, b, c], [one, two, three]) = (command.instants(), command.states());
+            [a, b, c, one, two, three]
+        });
         for (word, name) in names
             .into_iter()
             .enumerate()

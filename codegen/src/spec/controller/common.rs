@@ -163,7 +163,7 @@ pub(crate) const LOOP: &[Row<LoopOptions>] = &[
                     ("estimated", "from currents and voltages alone, without an angle between Hall edges"),
                 ],
             )
-            .about("Source of the EMF; `held` only with `modulation: three_phase` of `pdcc`, and with `fcs-mpc` and `phcc` unless `off_leg: physical` applies"),
+            .about("Source of the EMF; `held` with `pdcc` unless `modulation: pair`, and with `fcs-mpc` and `phcc` unless `off_leg: physical` applies"),
         |options| Some(word(options.emf)),
     ),
     Row::of(

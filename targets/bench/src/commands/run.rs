@@ -2,9 +2,10 @@
 
 use crate::BenchError;
 use crate::vectors::{Called, OnHost, Stretch, Stretches};
-use hexagen::{LegState, Legs, Sample};
+use hexagen::{Command as _, LegState, Sample};
 use hexagen_firmware::wire::{Digest, Record};
 use hexagen_lab::engine::Prepared;
+use hexagen_reference::AnyCommand;
 use std::fmt::Write as _;
 
 /// Commands of a drive.
@@ -14,7 +15,7 @@ pub struct Commands {
     pub steps: usize,
     /// Steps that drive the motor: not all legs are off.
     pub driving: usize,
-    /// Digest of all compare values and leg states.
+    /// Digest of all commands.
     pub digest: u64,
     /// For each stretch, half of the digest of its own commands.
     pub stretches: Vec<u32>,
@@ -26,15 +27,15 @@ struct Noting<'g, N> {
     note: N,
 }
 
-impl<N: FnMut(Sample, Legs)> Called for Noting<'_, N> {
+impl<N: FnMut(Sample, AnyCommand)> Called for Noting<'_, N> {
     fn call(&mut self, record: Record) {
         self.host.call(record);
     }
 
-    fn step(&mut self, sample: Sample) -> Legs {
-        let legs = self.host.step(sample);
-        (self.note)(sample, legs);
-        legs
+    fn step(&mut self, sample: Sample) -> AnyCommand {
+        let command = self.host.step(sample);
+        (self.note)(sample, command);
+        command
     }
 }
 
@@ -42,7 +43,7 @@ impl<N: FnMut(Sample, Legs)> Called for Noting<'_, N> {
 fn each_step(
     drive: &Prepared,
     stretch: &Stretch,
-    note: impl FnMut(Sample, Legs),
+    note: impl FnMut(Sample, AnyCommand),
 ) -> Result<(), BenchError> {
     let host = OnHost::new(drive);
     stretch.close(drive, &mut Noting { host, note })
@@ -60,18 +61,18 @@ impl Commands {
     /// Adds the stretches that `run` runs.
     fn through(
         steps: usize,
-        mut run: impl FnMut(&Stretch, &mut dyn FnMut(Sample, Legs)) -> Result<(), BenchError>,
+        mut run: impl FnMut(&Stretch, &mut dyn FnMut(Sample, AnyCommand)) -> Result<(), BenchError>,
     ) -> Result<Self, BenchError> {
         let mut commands = Self::default();
         let mut whole = Digest::default();
         let mut stretches = Stretches::default();
         while commands.steps < steps {
             let mut own = Digest::default();
-            run(&stretches.draw(), &mut |_, legs| {
-                whole.command(legs);
-                own.command(legs);
+            run(&stretches.draw(), &mut |_, command| {
+                whole.command(command.to_bits());
+                own.command(command.to_bits());
                 commands.steps += 1;
-                commands.driving += usize::from(legs.state() != [LegState::Off; 3]);
+                commands.driving += usize::from(command.state() != [LegState::Off; 3]);
             })?;
             commands.stretches.push(number(own) as u32);
         }
@@ -92,16 +93,15 @@ fn number(digest: Digest) -> u64 {
 pub fn in_full(drive: &Prepared, place: usize) -> Result<String, BenchError> {
     let mut stretches = Stretches::default();
     let stretch = (0..place).fold(stretches.draw(), |_, _| stretches.draw());
-    let mut text = String::from("step: adc_a adc_b hall ticks | compare_a _b _c | legs\n");
+    let mut text = String::from("step: adc_a adc_b hall ticks | command\n");
     let mut step = 0;
-    each_step(drive, &stretch, |sample, legs| {
+    each_step(drive, &stretch, |sample, command| {
         let [adc_a, adc_b, _] = sample.adc();
         let (hall, hall_ticks) = (sample.hall(), sample.ticks());
-        let ([a, b, c], state) = (legs.compare(), legs.state());
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{step}: {adc_a} {adc_b} {hall:03b} {hall_ticks} | {a} {b} {c} | {state:?}"
+            "{step}: {adc_a} {adc_b} {hall:03b} {hall_ticks} | {command:?}"
         );
         step += 1;
     })?;
@@ -137,9 +137,12 @@ mod tests {
         let mut step = 0;
         let mut ends = vec![];
         let planted = Commands::through(STEPS, |stretch, note| {
-            let outcome = each_step(&drive, stretch, |sample, legs| {
+            let outcome = each_step(&drive, stretch, |sample, command| {
                 let bit = u64::from(step == WRONG) << 32;
-                note(sample, Legs::from_bits(legs.to_bits() ^ bit));
+                note(
+                    sample,
+                    AnyCommand::from_bits(command.to_bits() ^ bit, false),
+                );
                 step += 1;
             });
             ends.push(step);

@@ -24,7 +24,7 @@ use expected::Expected;
 use goals::{blocks, goal};
 use hexagen_lab::counted::{Counted, Figures, Longest};
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};
-use hexagen_lab::reproduction::counted_readings;
+use hexagen_lab::reproduction::counted_drives;
 use longest::{Program, chip};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -292,7 +292,7 @@ fn paper_drive(variant: &str) -> Result<Prepared, BenchError> {
 
 /// The drives of the paper's experiment are those that `hexagen reproduce` runs.
 fn check_experiment(drives: &[Listed]) -> Result<(), BenchError> {
-    for (symbol, variant) in counted_readings() {
+    for (symbol, variant) in counted_drives() {
         let listed = drives.iter().find(|drive| drive.symbol == symbol);
         let listed = listed.ok_or_else(|| BenchError::Failed(format!("{symbol} is missing")))?;
         let run = paper_drive(variant)?;

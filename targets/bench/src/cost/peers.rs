@@ -58,7 +58,7 @@ fn in_loop_of<L: Peer, P: Peer>(drive: &Prepared, steps: usize) -> Result<Run, B
     let answer = |(step, sample)| Answer {
         sample,
         step,
-        bytes: encode_outputs(peer.step(&sample), None).to_vec(),
+        bytes: encode_outputs(peer.step(&sample).to_bits(), None).to_vec(),
     };
     let answers = inputs
         .samples()
@@ -104,7 +104,7 @@ mod tests {
     type Tested = PiPwm<I16F16>;
 
     /// The core's end in this process, with a given step function.
-    struct InProcess(extern "C" fn(&mut Tested, u16, u16, u8, u16) -> Legs);
+    struct InProcess(extern "C" fn(&mut Tested, u16, u16, u8, u16) -> u64);
 
     impl Core for InProcess {
         fn run(&self, task: Task, records: &[u8]) -> Result<Vec<u8>, BenchError> {
@@ -123,23 +123,23 @@ mod tests {
         adc_b: u16,
         hall: u8,
         hall_ticks: u16,
-    ) -> Legs {
+    ) -> u64 {
         let sample = Sample::with_hall([adc_a, adc_b], hall);
-        peer.step(&sample.hall_ticks(hall_ticks))
+        peer.step(&sample.hall_ticks(hall_ticks)).to_bits()
     }
 
     /// Result of a past miscompilation: correct state, zero outputs.
-    extern "C" fn zeros(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
+    extern "C" fn zeros(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> u64 {
         honest(peer, a, b, hall, ticks);
-        Legs::all(LegState::Pulsed)
+        Legs::all(LegState::Pulsed).to_bits()
     }
 
     /// One count too much in phase b, above 899.
-    extern "C" fn one_more(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> Legs {
-        let legs = honest(peer, a, b, hall, ticks);
+    extern "C" fn one_more(peer: &mut Tested, a: u16, b: u16, hall: u8, ticks: u16) -> u64 {
+        let legs = Legs::from_bits(honest(peer, a, b, hall, ticks));
         let [compare_a, compare_b, compare_c] = legs.compare();
         let compare_b = compare_b + u16::from(compare_b > 899);
-        Legs::new([compare_a, compare_b, compare_c], legs.state())
+        Legs::new([compare_a, compare_b, compare_c], legs.state()).to_bits()
     }
 
     #[test]

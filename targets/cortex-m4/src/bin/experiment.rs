@@ -1,4 +1,4 @@
-//! The drives of the paper's experiment, as in `hexagen reproduce`, counted for its Table 5.
+//! The drives of the paper's experiment and those that go beyond it, as in `hexagen reproduce`, counted for its Table 5.
 #![no_std]
 #![no_main]
 
@@ -8,7 +8,7 @@ use drives::DRIVES;
 use hexagen_cortex_m4 as _;
 use hexagen_firmware::semihosted::run;
 
-/// Each controller as printed in the paper, and corrected.
+/// Each controller as printed in the paper, corrected, and improved.
 mod drives {
     #![expect(deprecated, reason = "the printed switching table draws a warning")]
 
@@ -16,7 +16,7 @@ mod drives {
         FcsMpcLiteral, step_trivedi_keshri_660w_fcs_mpc_literal:
             "../motors/trivedi-keshri-660w.toml",
             fcs_mpc {
-                off_leg: nominal, emf: estimated, emf_filter: 1, delay: 0, discretisation: euler,
+                off_leg: nominal, emf: held, delay: 0, discretisation: euler,
                 hall_capture: timer
             };
         FcsMpcCorrected, step_trivedi_keshri_660w_fcs_mpc_corrected:
@@ -25,19 +25,27 @@ mod drives {
         PdccLiteral, step_trivedi_keshri_660w_pdcc_literal:
             "../motors/trivedi-keshri-660w.toml",
             pdcc {
-                reference: quasi_square, saturation: keep_angle, emf: estimated, emf_filter: 1,
+                reference: quasi_square, saturation: keep_angle, modulation: table2, emf: held,
                 discretisation: euler, hall_capture: timer
             };
         PdccCorrected, step_trivedi_keshri_660w_pdcc_corrected:
             "../motors/trivedi-keshri-660w.toml",
             pdcc {
-                saturation: torque_priority, advance: 2, emf: model, discretisation: euler,
+                reference: quasi_square, saturation: nearest, emf: model, discretisation: euler,
                 hall_capture: timer
             };
+        PdccImproved, step_trivedi_keshri_660w_pdcc_improved:
+            "../motors/trivedi-keshri-660w.toml",
+            pdcc {
+                reference: quasi_square, saturation: torque_priority, advance: 2, emf: model,
+                discretisation: euler, hall_capture: timer
+            };
+        PdccDefault, step_trivedi_keshri_660w_pdcc_default:
+            "../motors/trivedi-keshri-660w.toml", pdcc { hall_capture: timer };
         PhccLiteral, step_trivedi_keshri_660w_phcc_literal:
             "../motors/trivedi-keshri-660w.toml",
             phcc {
-                table: printed, emf: estimated, emf_filter: 1, discretisation: euler,
+                table: printed, off_leg: nominal, emf: held, discretisation: euler,
                 hall_capture: timer
             };
         PhccCorrected, step_trivedi_keshri_660w_phcc_corrected:
@@ -46,14 +54,21 @@ mod drives {
         PiPwmLiteral, step_trivedi_keshri_660w_pi_pwm_literal:
             "../motors/trivedi-keshri-660w.toml",
             pi_pwm {
-                reference: quasi_square, feed_forward: off, bandwidth: 800 Hz, integral_time: 0.5 ms,
+                reference: quasi_square, saturation: keep_angle, modulation: table2,
+                feed_forward: off, bandwidth: 800 Hz, integral_time: 0.5 ms,
                 discretisation: euler, hall_capture: timer
             };
         PiPwmCorrected, step_trivedi_keshri_660w_pi_pwm_corrected:
             "../motors/trivedi-keshri-660w.toml",
             pi_pwm {
-                reference: quasi_square, feed_forward: on, bandwidth: 1 kHz, emf: model,
-                discretisation: euler, hall_capture: timer
+                reference: quasi_square, saturation: nearest, feed_forward: off, bandwidth: 800 Hz,
+                integral_time: 0.5 ms, discretisation: euler, hall_capture: timer
+            };
+        PiPwmImproved, step_trivedi_keshri_660w_pi_pwm_improved:
+            "../motors/trivedi-keshri-660w.toml",
+            pi_pwm {
+                reference: quasi_square, saturation: nearest, feed_forward: on, bandwidth: 1 kHz,
+                emf: model, discretisation: euler, hall_capture: timer
             };
     }
 }

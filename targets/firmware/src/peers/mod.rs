@@ -36,9 +36,9 @@ macro_rules! peers {
                 adc_b: u16,
                 hall: u8,
                 hall_ticks: u16,
-            ) -> $crate::hexagen::Legs {
+            ) -> u64 {
                 let sample = $crate::hexagen::Sample::with_hall([adc_a, adc_b], hall);
-                $crate::peers::Peer::step(peer, &sample.hall_ticks(hall_ticks))
+                $crate::peers::Peer::step(peer, &sample.hall_ticks(hall_ticks)).to_bits()
             }
         )*
 

@@ -87,6 +87,8 @@ pub struct Reproduction {
     pub speeds_rpm: [f64; 2],
     /// The runs, methods in the paper's order.
     pub methods: [BothReadings; 4],
+    /// The drives that go beyond the paper.
+    pub improvements: Vec<Improved>,
     /// Switching tables of PHCC.
     pub tables: SwitchingTables,
 }
@@ -108,6 +110,15 @@ impl BothReadings {
             Reading::Corrected => &self.corrected,
         }
     }
+}
+
+/// A drive that goes beyond the paper.
+#[derive(Clone, Debug)]
+pub struct Improved {
+    /// What it does otherwise, in a sentence.
+    pub about: &'static str,
+    /// Its results.
+    pub run: Run,
 }
 
 /// One drive with its results.

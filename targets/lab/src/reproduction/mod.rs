@@ -12,9 +12,11 @@ mod run;
 mod timing;
 
 pub use claims::claims;
-pub use data::{BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables};
+pub use data::{
+    BothReadings, Improved, Method, Point, Reading, Reproduction, Run, SwitchingTables,
+};
 pub use experiment::{AtSpeed, Experiment, Figures, Setting};
 pub use judge::{Claim, Finding, Statement, Verdict};
 pub use outline::distance_rms;
-pub use run::{Effort, counted_readings, reproduce};
+pub use run::{Effort, counted_drives, reproduce};
 pub use timing::{CLOCK_HZ, TIMES_TEXT, Times};

@@ -2,7 +2,8 @@
 //! the paper's motor.
 
 use super::{
-    BothReadings, Method, Point, Reading, Reproduction, Run, SwitchingTables, distance_rms,
+    BothReadings, Improved, Method, Point, Reading, Reproduction, Run, SwitchingTables,
+    distance_rms,
 };
 use crate::closed_loop::{
     Delay, Held, LimitOptions, RunOptions, STARTS, mean_torque, measure, speed_limit_knowing,
@@ -11,7 +12,7 @@ use crate::counted::{Counted, Figures as StepCost};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, SetPoint, plant_of, run_of};
 use crate::plant::PlantParams;
 use crate::results::PAPER_MOTOR;
-use crate::{LabError, Progress, READINGS};
+use crate::{IMPROVEMENTS, LabError, Progress, READINGS};
 use hexagen_codegen::interface::PublicValue;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -44,11 +45,12 @@ impl Effort {
     }
 }
 
-/// Symbol of the step function that `cargo xtask cost` counts for each reading of each method, and
-/// its variant; in the order of [`READINGS`], literal before corrected.
-pub fn counted_readings() -> impl Iterator<Item = (String, &'static str)> {
+/// Symbol of the step function that `cargo xtask cost` counts for each reading of each method and for
+/// each improvement, and its variant; in the order of [`READINGS`], literal before corrected, then of
+/// [`IMPROVEMENTS`].
+pub fn counted_drives() -> impl Iterator<Item = (String, &'static str)> {
     let methods = Method::ALL.into_iter().zip(READINGS);
-    methods.flat_map(|(method, readings)| {
+    let of_readings = methods.flat_map(|(method, readings)| {
         let controller = method.name().to_lowercase().replace('-', "_");
         Reading::ALL.map(|reading| {
             let variant = match reading {
@@ -58,7 +60,11 @@ pub fn counted_readings() -> impl Iterator<Item = (String, &'static str)> {
             let symbol = format!("step_trivedi_keshri_660w_{controller}_{}", reading.name());
             (symbol, variant)
         })
-    })
+    });
+    let improvements = IMPROVEMENTS
+        .iter()
+        .map(|improvement| (improvement.symbol.to_owned(), improvement.variant));
+    of_readings.chain(improvements)
 }
 
 /// Runs everything.
@@ -67,13 +73,13 @@ pub fn counted_readings() -> impl Iterator<Item = (String, &'static str)> {
 /// Diagnostics of a drive, a plant parameter out of range, or a step without a count.
 pub fn reproduce(effort: &Effort, progress: &dyn Progress) -> Result<Reproduction, LabError> {
     let motor = SelectedMotor::find(PAPER_MOTOR, &PlantOptions::default())?;
-    let drives = counted_readings()
+    let drives = counted_drives()
         .map(|(_, variant)| motor.prepare(Some(variant)))
         .collect::<Result<Vec<_>, _>>()?;
     let per_drive = SPEEDS.len() + effort.curve_rpm.len() + 1;
     progress.begin("simulating", (per_drive * drives.len()) as u64);
     let counted = Counted::on_cortex_m4()?;
-    let costs = counted_readings()
+    let costs = counted_drives()
         .map(|(symbol, _)| counted.of_step(&symbol))
         .collect::<Result<Vec<_>, _>>()?;
     let runs = drives
@@ -82,6 +88,7 @@ pub fn reproduce(effort: &Effort, progress: &dyn Progress) -> Result<Reproductio
         .map(|(drive, cost)| Bench::of(drive, effort, cost).run(progress))
         .collect::<Result<Vec<_>, LabError>>();
     let mut runs = runs?.into_iter();
+    // The readings come first.
     let [Some(fcs_mpc), Some(pdcc), Some(phcc), Some(pi_pwm)] = [(); 4].map(|()| {
         Some(BothReadings {
             literal: runs.next()?,
@@ -90,6 +97,14 @@ pub fn reproduce(effort: &Effort, progress: &dyn Progress) -> Result<Reproductio
     }) else {
         return Err(LabError::Argument("a reading is missing".to_owned()));
     };
+    let improvements = IMPROVEMENTS
+        .iter()
+        .zip(runs)
+        .map(|(improvement, run)| Improved {
+            about: improvement.about,
+            run,
+        });
+    let improvements = improvements.collect();
     let phcc_drives = &drives[2 * Method::Phcc.index()..];
     let spec = &drives[0].spec;
     Ok(Reproduction {
@@ -100,6 +115,7 @@ pub fn reproduce(effort: &Effort, progress: &dyn Progress) -> Result<Reproductio
         current: TORQUE / spec.torque_constant(),
         speeds_rpm: SPEEDS,
         methods: [fcs_mpc, pdcc, phcc, pi_pwm],
+        improvements,
         tables: SwitchingTables {
             printed: forward_rows(&phcc_drives[0]),
             derived: forward_rows(&phcc_drives[1]),

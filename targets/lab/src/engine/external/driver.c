@@ -38,10 +38,10 @@ static void answer_command(const hexagen_intervals *intervals)
 {
     answer(2, intervals->end[0]);
     answer(2, intervals->end[1]);
-    answer(2, 0U);
     for (int interval = 0; interval < 3; interval++) {
-        answer(2, intervals->states[interval]);
+        answer(1, intervals->states[interval]);
     }
+    answer(1, 0U);
 }
 #else
 typedef hexagen_legs command_type;
@@ -54,7 +54,6 @@ static void answer_command(const hexagen_legs *legs)
         states |= (uint32_t)legs->state[leg] << (2 * leg);
     }
     answer(2, states);
-    answer(4, 0U);
 }
 #endif
 

@@ -56,9 +56,7 @@ fn main() {
                         Sample::with_angle(adc, angle)
                     };
                     let command = drive.step(&sample.third_current(adc_c));
-                    for word in command.words() {
-                        answers.extend(word.to_le_bytes());
-                    }
+                    answers.extend(command.to_bits().to_le_bytes());
                     let status = drive.status();
                     answers.push(status.fault.map_or(0, |fault| fault as u8));
                     answers.push(u8::from(status.bus_is_stale));

@@ -5,7 +5,7 @@
 //! the other end.
 
 use super::{External, Terms};
-use hexagen::{Command as _, Fault, Intervals, Legs, Sample};
+use hexagen::{Command as _, Fault, Sample};
 use hexagen_reference::{AnyCommand, Stop};
 use std::io::{self, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -89,7 +89,7 @@ impl Link {
     /// Bytes of a step's answer: words of the command, fault, staleness of the bus voltage, state
     /// words.
     fn answer_length(&self) -> usize {
-        12 + 1 + 1 + 4 * self.state_words
+        8 + 1 + 1 + 4 * self.state_words
     }
 
     /// Adds a call to the batch.
@@ -148,7 +148,7 @@ impl Link {
     ) {
         self.send_step(sample);
         let expected = &mut self.expected;
-        expected.extend(command.words().into_iter().flat_map(u16::to_le_bytes));
+        expected.extend(command.to_bits().to_le_bytes());
         let fault = fault.map_or(0, |fault| fault as u8);
         expected.extend([fault, u8::from(bus_is_stale)]);
         expected.extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -170,21 +170,15 @@ impl Link {
         if self.broken.is_some() {
             return None;
         }
-        let answer = &self.found;
-        let half = |place: usize| u16::from_le_bytes([answer[2 * place], answer[2 * place + 1]]);
-        for (word, bytes) in words.iter_mut().zip(answer[14..].chunks_exact(4)) {
-            *word = i32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+        let (&command, answer) = self.found.split_first_chunk()?;
+        let (&[fault, bus_is_stale], answer) = answer.split_first_chunk()?;
+        let (answered, _) = answer.as_chunks();
+        for (word, &bytes) in words.iter_mut().zip(answered) {
+            *word = i32::from_le_bytes(bytes);
         }
-        let instants = [half(0), half(1)];
-        let command = if self.has_intervals {
-            Intervals::of_states(instants, [half(3), half(4), half(5)]).into()
-        } else {
-            let bits = [half(0), half(1), half(2), half(3)];
-            let bits = bits.into_iter().rev();
-            Legs::from_bits(bits.fold(0, |bits, half| bits << 16 | u64::from(half))).into()
-        };
-        let fault = Fault::from_number(answer[12].into());
-        Some((command, fault, answer[13] != 0))
+        let command = AnyCommand::from_bits(u64::from_le_bytes(command), self.has_intervals);
+        let fault = Fault::from_number(fault.into());
+        Some((command, fault, bus_is_stale != 0))
     }
 
     /// Sends the batch and reads its answers into `found`.

@@ -33,12 +33,14 @@ pub fn reproduction_page(data: &Reproduction) -> Page {
     }
 }
 
-/// Summary without a page: the claims with verdicts and reasons, and Table 5.
+/// Summary without a page: the claims with verdicts and reasons, the improvements, and Table 5.
 pub fn reproduction_blocks(data: &Reproduction) -> Vec<Block> {
     let [_, setting] = opening(data);
     let verdicts = verdicts::summary(data);
     let all = [setting].into_iter().chain(verdicts);
-    all.chain(tables::table_5(data)).collect()
+    all.chain(verdicts::improvements(data))
+        .chain(tables::table_5(data))
+        .collect()
 }
 
 /// Tables and figures in the paper's order.
@@ -139,6 +141,11 @@ fn of_runs(data: &Reproduction) -> Vec<Section> {
             "table-5",
             "Table 5: computation time and switching",
             tables::table_5(data),
+        ),
+        Section::new(
+            "improvements",
+            "Beyond the paper",
+            verdicts::improvements(data),
         ),
     ]
 }

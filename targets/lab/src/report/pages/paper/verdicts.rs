@@ -2,6 +2,7 @@
 
 use crate::report::{Block, Cell, Column, Label, Table, Tone};
 use crate::reproduction::{Claim, Finding, Method, Reading, Reproduction, Verdict};
+use crate::text::{number, quantity, ripple};
 
 /// A table of claims without rows.
 fn table_of_claims() -> Table {
@@ -104,6 +105,52 @@ pub fn readings(data: &Reproduction) -> Vec<Block> {
     vec![Block::Prose(how), Block::Table(table)]
 }
 
+/// The drives that go beyond the paper, in rows of their own.
+pub fn improvements(data: &Reproduction) -> Vec<Block> {
+    let speeds = data.speeds_rpm.map(|rpm| format!("{} rpm", number(rpm, 0)));
+    let of_speeds = speeds.iter().flat_map(|speed| {
+        [
+            Column::number("Mean, Nm", "").of(speed),
+            Column::number("Ripple pp, %", "").of(speed),
+        ]
+    });
+    let costs = [
+        Column::number("Limit, %", "").of("Of rated speed"),
+        Column::number("usual", "").of("Instructions"),
+        Column::number("worst", "").of("Instructions"),
+    ];
+    let mut table = Table::new(
+        "results improvements",
+        [Column::text("Drive")]
+            .into_iter()
+            .chain(of_speeds)
+            .chain(costs),
+    );
+    for improved in &data.improvements {
+        let run = &improved.run;
+        let figures = run.points.iter().flat_map(|point| {
+            let figures = &point.figures;
+            [
+                number(figures.mean_torque_nm, 3),
+                ripple(figures.ripple_pp_pct),
+            ]
+        });
+        let rest = [
+            number(run.limit.limit_pct, 0),
+            number(run.usual_instructions().map(f64::from), 0),
+            run.cost.worst.to_string(),
+        ];
+        let name = Cell::from(improved.about).detail(format!("\n`{}`", run.variant));
+        let cells = figures.chain(rest).map(Cell::from);
+        table.row([name].into_iter().chain(cells));
+    }
+    let how = format!(
+        "What the paper does not have, on the same motor at {} demanded; no claim is judged by these drives.",
+        quantity(data.torque, "Nm")
+    );
+    vec![Block::Prose(how), Block::Table(table)]
+}
+
 /// A method's name after its letter.
 pub fn lettered(method: Method) -> String {
     format!("({}) {}", method.letter(), method.name())
@@ -112,28 +159,28 @@ pub fn lettered(method: Method) -> String {
 fn about(method: Method, reading: Reading) -> &'static str {
     match (method, reading) {
         (Method::FcsMpc, Reading::Literal) => {
-            "Predicts without the loop's delay of one period. Table 2's vectors, the off leg's diode ignored; EMF of the last period."
+            "Predicts without the loop's delay of one period. Table 2's vectors, the off leg's diode ignored; the EMF of the last period is taken as unchanged."
         }
         (Method::FcsMpc, Reading::Corrected) => {
-            "Predicts with the applied vector, the off leg clamped by its diode or floating; EMF from the motor's EMF shape."
+            "Predicts with the applied vector, the off leg clamped by its diode or floating (erratum of (15)); EMF from the motor's shape, as (5)."
         }
         (Method::Pdcc, Reading::Literal) => {
-            "Voltage scaled to the hexagon; EMF from the last period. All three legs are pulsed; the paper's own modulator, `modulation=table2` (`hexagen simulate`), is not run on this page, for `cargo xtask cost` counts no step of it."
+            "The paper's modulator, (14) to (16); the voltage is scaled to what it reaches; the EMF of the last period is taken as unchanged."
         }
         (Method::Pdcc, Reading::Corrected) => {
-            "At the voltage limit keeps the component along the EMF; commutates two periods ahead; EMF from the motor's EMF shape."
+            "Three legs are pulsed, since vectors of two pairs do not give the mean that (15) computes; at its limit the nearest voltage; EMF from the motor's shape, as (5)."
         }
         (Method::Phcc, Reading::Literal) => {
-            "The printed row of sector 1, rotated through the sectors; EMF of the last period."
+            "The printed row of sector 1, rotated through the sectors; the off leg's diode ignored; the EMF of the last period is taken as unchanged."
         }
         (Method::Phcc, Reading::Corrected) => {
-            "Switching table derived from the vectors' geometry; EMF from the motor's shape."
+            "Switching table derived from the vectors' geometry; EMF from the motor's shape, as (5)."
         }
         (Method::PiPwm, Reading::Literal) => {
-            "800 Hz, integral time 0.5 ms, no EMF feed-forward. All three legs are pulsed, as with PDCC."
+            "800 Hz, integral time 0.5 ms (the paper states neither), no feed-forward of the EMF; the paper's modulator, as with PDCC."
         }
         (Method::PiPwm, Reading::Corrected) => {
-            "1 kHz, integral time L/R, feed-forward of the motor's EMF."
+            "The same controller; three legs are pulsed, at their limit the nearest voltage, as with PDCC."
         }
     }
 }
