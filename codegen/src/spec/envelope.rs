@@ -7,7 +7,9 @@
 //!
 //! with e the mean of the EMF in between. That is linear in the set-point, so each angle and each pair of
 //! legs bounds it by the voltage that the legs reach. A quasi-square reference needs 2 R I and the EMF of
-//! its two phases; its commutations take more and are left out. Field weakening turns the reference where the
+//! its two phases; its commutations take more and are left out. Vectors of pairs (`modulation: table2`) make half
+//! the bus as a phase voltage: 2 R I and twice the greatest EMF of a phase, less the mean of the three, are within
+//! the bus. Field weakening turns the reference where the
 //! voltage ends: the envelope is that of the best angle at which the bus drives the whole turned shape. Beyond it a
 //! trapezoid still makes torque, with its shape cut.
 
@@ -46,6 +48,8 @@ pub struct Envelope {
     pub v_bus: f64,
     /// Share of the bus voltage that two legs reach between them, 0 to 1.
     pub reach: f64,
+    /// Whether vectors of pairs make the voltage, one leg off, as with `modulation: table2`.
+    pub pairs: bool,
     /// Largest set-point, ampere.
     pub max_current: f64,
     /// Greatest current drawn from the bus, ampere.
@@ -84,6 +88,7 @@ impl Envelope {
             t_s: inverter.t_s,
             v_bus: inverter.v_bus,
             reach: spec.reach_share(),
+            pairs: spec.controller.has_intervals(),
             max_current: inverter.max_current,
             bus_current: inverter.bus_currents.drawn,
             weakening: weakens.then(|| share_of_torque(motor.emf_shape)),
@@ -129,7 +134,7 @@ impl Envelope {
 
     /// Speed at which the EMF takes all that the legs reach, mechanical rad/s.
     pub fn idle_speed(&self) -> f64 {
-        self.line_voltage() / (self.emf_constant * self.emf_shape.line_to_line_peak())
+        self.line_voltage() / self.emf_peak()
     }
 
     /// Greatest set-point at a speed, ampere.
@@ -168,7 +173,7 @@ impl Envelope {
     pub fn voltages(&self, omega_m: f64, set_point: f64) -> [f64; 3] {
         let whole = |omega_m| self.reach * self.bus_voltage(omega_m, set_point);
         let drop = whole(0.0);
-        let emf = omega_m * self.emf_constant * self.emf_shape.line_to_line_peak();
+        let emf = omega_m * self.emf_peak();
         [emf, drop, (whole(omega_m) - emf - drop).max(0.0)]
     }
 
@@ -198,13 +203,22 @@ impl Envelope {
         self.lines(omega_m).into_iter().fold(f64::INFINITY, bound)
     }
 
+    /// Greatest EMF between two legs, or with vectors of pairs twice that of a phase, over mechanical speed, V s/rad.
+    fn emf_peak(&self) -> f64 {
+        if !self.pairs {
+            return self.emf_constant * self.emf_shape.line_to_line_peak();
+        }
+        let of_phases = sector().flat_map(|theta| self.mean_emf(theta, 0.0));
+        2.0 * of_phases.fold(0.0, |most, emf| f64::max(most, emf.abs()))
+    }
+
     /// What a set-point of one ampere and the EMF take between two legs over a sector.
     fn lines(&self, omega_m: f64) -> Vec<Line> {
         match self.reference {
             // Two phases carry one current, at worst where their EMF is greatest.
             Reference::QuasiSquare => vec![Line {
                 drop: 2.0 * self.resistance,
-                emf: self.emf_constant * omega_m * self.emf_shape.line_to_line_peak(),
+                emf: omega_m * self.emf_peak(),
             }],
             Reference::Proportional => self.lines_of_three(omega_m),
         }
@@ -302,6 +316,7 @@ mod tests {
         t_s: 50e-6,
         v_bus: 48.0,
         reach: 1.0,
+        pairs: false,
         max_current: 22.0,
         bus_current: None,
         weakening: None,
@@ -359,6 +374,19 @@ mod tests {
         assert!(near(drive.set_point(270.0), (48.0 - 44.496) / 0.27));
         assert!(near(drive.torque(270.0), 2.0 * 0.0824 * 12.978));
         assert_eq!(drive.torque(292.0), 0.0);
+    }
+
+    #[test]
+    fn vectors_of_pairs_drive_three_quarters_of_the_emf_of_a_trapezoid() {
+        let drive = Envelope {
+            reference: Reference::QuasiSquare,
+            pairs: true,
+            ..DRIVE
+        };
+        // Beside E and -E the third phase has between -E and E: less their mean, at most 4/3 E.
+        let most = 48.0 / (8.0 / 3.0 * 0.0824);
+        assert!(near(drive.idle_speed(), most));
+        assert!(near(drive.set_point(0.9 * most), 0.1 * 48.0 / 0.27));
     }
 
     #[test]

@@ -243,6 +243,7 @@ fn envelope(motor: &MotorSpec, inverter: &Inverter, reference: Reference) -> Opt
         t_s: inverter.t_s?,
         v_bus: inverter.v_bus.as_ref()?.si,
         reach: 1.0,
+        pairs: false,
         max_current: f64::INFINITY,
         bus_current: None,
         weakening: None,
