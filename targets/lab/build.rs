@@ -97,7 +97,7 @@ fn names() -> Result<Vec<String>, Box<dyn Error>> {
 fn generate(name: &str, file: &str) -> Result<Vec<hexagen_codegen::Written>, Box<dyn Error>> {
     // Every controller is generated for every motor; the program gives the warnings of those that
     // are asked for.
-    let mut builder = ["HX0601", "HX0602", "HX0610", "HX0611"]
+    let mut builder = ["HX0601", "HX0602", "HX0604", "HX0610", "HX0611"]
         .into_iter()
         .fold(hexagen_codegen::Builder::new(), |builder, code| {
             builder.allow(code)

@@ -69,6 +69,7 @@ mod tests {
             t_s: 50e-6,
             v_bus: 24.0,
             reach: 1.0,
+            pairs: false,
             max_current: 40.0,
             bus_current: None,
             weakening: None,

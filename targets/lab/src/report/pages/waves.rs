@@ -254,7 +254,6 @@ pub fn torque(data: &Results) -> Vec<Block> {
             ripple_key(variant(0)),
             demand_key(),
         ]),
-        Block::Note("The vertical axis does not begin at zero.".to_owned()),
         Block::Figures {
             columns: 2,
             figures: torque_figures(&panels, data.torque),

@@ -110,12 +110,16 @@ impl Axis {
         Self::stepped(title, range, step(range, pieces))
     }
 
-    /// An axis with ticks at the multiples of a step.
+    /// An axis with ticks at the multiples of a step. If zero is not on it, its title says so.
     pub fn stepped(title: impl Into<String>, range: &Range<f64>, step: f64) -> Self {
         let digits = (-step.log10() - 1e-9).ceil().clamp(0.0, 9.0) as usize;
         let ticks = multiples(range, step).into_iter();
+        let mut title = title.into();
+        if !(range.start..=range.end).contains(&0.0) {
+            title.push_str(" (without 0)");
+        }
         Self {
-            title: title.into(),
+            title,
             range: (range.start, range.end),
             ticks: ticks.map(|at| (at, tick_text(at, digits))).collect(),
             is_logarithmic: false,
@@ -329,5 +333,22 @@ fn tick_text(value: f64, decimals: usize) -> String {
         format!("\u{2212}{text}")
     } else {
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Axis;
+
+    #[test]
+    fn an_axis_without_zero_says_so() {
+        for (range, title) in [
+            (0.0..2.0, "A"),
+            (-1.0..1.0, "A"),
+            (2.5..4.0, "A (without 0)"),
+            (-4.0..-2.0, "A (without 0)"),
+        ] {
+            assert_eq!(Axis::new("A", &range, 5).title, title);
+        }
     }
 }

@@ -185,7 +185,7 @@ fn bar_of_each(values: impl Fn(usize) -> Vec<Option<f64>>) -> Vec<Bar> {
 /// Figures 16 and 17: torque with its 6th and 12th harmonic.
 pub fn torques(data: &Reproduction, speed: usize) -> Vec<Block> {
     let (panels, _) = panels(data, speed);
-    let note = "Lines are means over one control period. The vertical axis does not begin at zero.";
+    let note = "Lines are means over one control period.";
     vec![
         legend(line, [ripple_key(variant(0)), demand_key()]),
         Block::Note(note.to_owned()),
