@@ -61,20 +61,21 @@ pub struct Chip {
 pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
-    /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
-    /// estimate.
+    /// Largest error of a counted drive by the estimate fitted to all other usual ones, as a part of
+    /// the estimate.
     pub error: f64,
-    /// The same among drives that do not learn the places of their Hall sensors. An edge that is
-    /// learnt is work of few steps, of which the operations tell less than of the rest.
-    pub error_without_learning: f64,
+    /// The same among usual drives: those that neither learn the places of their Hall sensors nor turn
+    /// legs off within a period. An edge that is learnt is work of few steps, and which steps limit the
+    /// voltage of pairs depends on the drive: the operations tell less of both.
+    pub error_of_usual: f64,
 }
 
 impl Estimate {
-    const fn of(weights: Work, error: f64, error_without_learning: f64) -> Self {
+    const fn of(weights: Work, error: f64, error_of_usual: f64) -> Self {
         Self {
             weights,
             error,
-            error_without_learning,
+            error_of_usual,
         }
     }
 }
@@ -295,6 +296,7 @@ pub struct Asked<'a> {
 pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
     let digest = digest(asked.spec_toml);
     let work = work(program);
+    let is_usual = !asked.learns_halls && !program.has_intervals();
     let chips = CHIPS
         .iter()
         .filter(|chip| asked.target.is_none_or(|target| target == chip.target));
@@ -312,7 +314,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
                 times: times.with_waits(part),
                 errors: counted
                     .is_none()
-                    .then(|| times.errors_with_waits(part, chip.errors(asked.learns_halls))),
+                    .then(|| times.errors_with_waits(part, chip.errors(is_usual))),
             }
         })
         .collect()
@@ -342,12 +344,12 @@ impl Chip {
         counted.map(|(_, times)| *times)
     }
 
-    fn errors(&self, learns_halls: bool) -> Times<f64> {
+    fn errors(&self, is_usual: bool) -> Times<f64> {
         self.estimates.map(|estimate| {
-            if learns_halls {
-                estimate.error
+            if is_usual {
+                estimate.error_of_usual
             } else {
-                estimate.error_without_learning
+                estimate.error
             }
         })
     }

@@ -18,7 +18,7 @@ use std::process::Command;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     digest: u64,
-    learns_halls: bool,
+    is_usual: bool,
     work: Times<Work>,
 }
 
@@ -45,7 +45,7 @@ pub struct Counted {
 /// One figure of a counted drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Point {
-    learns_halls: bool,
+    is_usual: bool,
     work: Work,
     time: f64,
 }
@@ -55,15 +55,16 @@ struct Point {
 struct Fit {
     weights: Work,
     error: f64,
-    error_without_learning: f64,
+    error_of_usual: f64,
 }
 
 impl Calibration {
     pub fn of(drive: &Prepared) -> Self {
+        let program = drive.generated.graph.program();
         Self {
             digest: digest(&drive.generated.interface.spec_toml),
-            learns_halls: drive.generated.interface.hall_shifts.is_some(),
-            work: work(drive.generated.graph.program()),
+            is_usual: drive.generated.interface.hall_shifts.is_none() && !program.has_intervals(),
+            work: work(program),
         }
     }
 }
@@ -171,8 +172,8 @@ fn chip_item(of: &Counted) -> Result<String, BenchError> {
 
 fn estimate(fit: Fit) -> String {
     let weights = fit.weights.map(number).join(", ");
-    let [error, without_learning] = [fit.error, fit.error_without_learning].map(number);
-    format!("Estimate::of([{weights}], {error}, {without_learning})")
+    let [error, of_usual] = [fit.error, fit.error_of_usual].map(number);
+    format!("Estimate::of([{weights}], {error}, {of_usual})")
 }
 
 /// The times of each specification; of drives with one specification the longer.
@@ -242,12 +243,10 @@ fn number(number: f64) -> String {
 fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     let typical = drives.iter().filter(|drive| drive.is_typical);
     let points = typical.map(|drive| {
-        let Calibration {
-            learns_halls, work, ..
-        } = drive.calibration;
+        let Calibration { is_usual, work, .. } = drive.calibration;
         let figures = work.zip(drive.times.map(f64::from));
         let point = |(work, time)| Point {
-            learns_halls,
+            is_usual,
             work,
             time,
         };
@@ -266,21 +265,26 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
 }
 
 fn fit(points: &[Point]) -> Result<Fit, BenchError> {
-    let (mut error, mut error_without_learning) = (0.0_f64, 0.0_f64);
-    for (left_out, point) in points.iter().enumerate() {
-        let mut others = points.to_vec();
+    let usual: Vec<Point> = points
+        .iter()
+        .filter(|point| point.is_usual)
+        .copied()
+        .collect();
+    let off =
+        |weights: &Work, point: &Point| (point.time / weighed(weights, &point.work) - 1.0).abs();
+    let mut error_of_usual = 0.0_f64;
+    for (left_out, point) in usual.iter().enumerate() {
+        let mut others = usual.clone();
         others.remove(left_out);
-        let estimate = weighed(&weights(&others)?, &point.work);
-        let own = (point.time / estimate - 1.0).abs();
-        error = error.max(own);
-        if !point.learns_halls {
-            error_without_learning = error_without_learning.max(own);
-        }
+        error_of_usual = error_of_usual.max(off(&weights(&others)?, point));
     }
+    let weights = weights(&usual)?;
+    let unusual = points.iter().filter(|point| !point.is_usual);
+    let errors = unusual.map(|point| off(&weights, point));
     Ok(Fit {
-        weights: weights(points)?,
-        error,
-        error_without_learning,
+        weights,
+        error: errors.fold(error_of_usual, f64::max),
+        error_of_usual,
     })
 }
 
@@ -316,7 +320,7 @@ mod tests {
     fn a_law_of_operations_is_found_and_an_outlier_is_told() {
         let point = |add: f64, product: f64| [1.0, 0.0, add, product, 0.0, 0.0, 0.0];
         let exact = |work: Work| Point {
-            learns_halls: false,
+            is_usual: true,
             work,
             time: 20.0 + 1.5 * work[2] + 4.0 * work[3],
         };
@@ -327,18 +331,18 @@ mod tests {
         for (weight, expected) in [(0, 20.0), (2, 1.5), (3, 4.0)] {
             assert!((found.weights[weight] - expected).abs() < 1e-6);
         }
-        assert!(found.error < 1e-6 && found.error_without_learning < 1e-6);
+        assert!(found.error < 1e-6 && found.error_of_usual < 1e-6);
         // A drive that takes a quarter more changes no weight, and is the largest error of its kind.
         let usual = exact(point(35.0, 3.0));
         points.push(Point {
-            learns_halls: true,
+            is_usual: false,
             time: 1.25 * usual.time,
             ..usual
         });
         let found = fit(&points).expect("a fit");
         assert!((found.weights[2] - 1.5).abs() < 1e-6);
         assert!((found.error - 0.25).abs() < 1e-6, "{}", found.error);
-        assert!(found.error_without_learning < 1e-6, "{found:?}");
+        assert!(found.error_of_usual < 1e-6, "{found:?}");
     }
 
     #[test]

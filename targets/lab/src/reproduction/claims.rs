@@ -177,32 +177,12 @@ impl Both {
 
     fn harmonics_at_low_speed(&self) -> Claim {
         let mut statements = vec![self.misses(FcsMpc, LOW)];
+        // An order of the three methods that the claim names; it is silent about PHCC.
         for (name, of) in TORQUE {
-            let at = (LOW, of);
-            let (most, least) = (Extreme::Most, Extreme::Least);
-            statements.extend([
-                self.extreme(
-                    &format!("FCS-MPC most {name}"),
-                    most,
-                    FcsMpc,
-                    &others(FcsMpc),
-                    at,
-                ),
-                self.extreme(
-                    &format!("then PI-PWM {name}"),
-                    most,
-                    PiPwm,
-                    &[Pdcc, Phcc],
-                    at,
-                ),
-                self.extreme(
-                    &format!("PDCC least {name}"),
-                    least,
-                    Pdcc,
-                    &others(Pdcc),
-                    at,
-                ),
-            ]);
+            for (method, next) in [(FcsMpc, PiPwm), (PiPwm, Pdcc)] {
+                let text = format!("{} more {name} than {}", method.name(), next.name());
+                statements.push(self.extreme(&text, Extreme::Most, method, &[next], (LOW, of)));
+            }
         }
         Claim {
             letter: 'b',

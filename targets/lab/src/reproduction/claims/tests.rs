@@ -174,8 +174,10 @@ fn one_lost_drive_leaves_only_its_statements_open() {
     assert_eq!(outcome('a', "PI-PWM to 67 %"), Some(true));
     assert_eq!(outcome('a', "PHCC to about 85 %"), None);
     assert_eq!(outcome('b', "FCS-MPC misses 3.30 Nm"), Some(true));
-    // The lost drive might have had more.
-    assert_eq!(outcome('b', "FCS-MPC most 6th"), None);
+    // The claim does not name the lost drive.
+    assert_eq!(outcome('b', "FCS-MPC more 6th than PI-PWM"), Some(true));
+    // The lost drive might have had less.
+    assert_eq!(outcome('c', "FCS-MPC least 6th"), None);
     assert_eq!(outcome('c', "PDCC and PHCC equal 6th"), None);
     assert_eq!(
         outcome('d', "PDCC and PHCC keep the ideal spectrum at 1500 rpm"),
