@@ -7,6 +7,7 @@
 mod compile_time;
 mod editors;
 mod install;
+mod mutants;
 mod packages;
 mod readme;
 mod step;
@@ -57,6 +58,9 @@ enum Command {
     /// Plants 300 faults and lists the detector of each: interval verifier, Gappa, or the
     /// comparison with the bit-true model
     Faults,
+    /// Mutation score: share of small changes of the sources that the tests notice, apart from text
+    /// snapshots: a sample of generator and laboratory, and all of the runtime
+    Mutants(mutants::Options),
     /// Time that 100 controllers add to `cargo check`, and the share of each part of the generator
     CompileTime,
     /// What rust-analyzer shows of a macro call: documentation, definitions, errors; installs it,
@@ -98,6 +102,9 @@ fn main() -> ExitCode {
         Command::Commands(forwarded) => steps::run(&[steps::bench("commands", &forwarded.options)]),
         Command::Marks => steps::run(&[steps::bench("marks", &[])]),
         Command::Faults => steps::checker().and_then(|()| steps::run(&[steps::faults()])),
+        Command::Mutants(options) => steps::checker()
+            .and_then(|()| steps::browser())
+            .and_then(|()| mutants::score(&options)),
         Command::CompileTime => compile_time::measure(step::root()),
         Command::Editors => editors::install().and_then(|()| steps::run(&[editors::session()])),
         Command::Accept => steps::checker()
