@@ -10,8 +10,7 @@
 //! shape is that of the angle.
 
 use super::Lowering;
-use super::measure::Hall;
-use super::rotor::SIXTH;
+use super::measure::{Hall, SIXTH};
 use crate::ir::{Expr, Flag, Interval, Memory, Named as _, Phases, named, pick};
 use std::f64::consts::PI;
 

@@ -4,6 +4,9 @@ use super::Lowering;
 use crate::ir::{Expr, Flag, Interval, Lut, Memory, Phases, named};
 use crate::spec::RotorSensing;
 
+/// A sixth of a turn, a sector: floor(2^32 / 6).
+pub(super) const SIXTH: i64 = 715_827_882;
+
 /// A sample that the supervisor has checked.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'b> {

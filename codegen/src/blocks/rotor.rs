@@ -3,7 +3,7 @@
 use super::Lowering;
 use super::commutation::CommutationRule;
 use super::hall_learning::{Edge, HallLearning, Placed, Seen};
-use super::measure::{Hall, Sample};
+use super::measure::{Hall, SIXTH, Sample};
 use super::number::round_half_up;
 use super::over_speed::OverSpeedWatch;
 use super::speed_rise::{GREATEST_RISE, risen, speed_rise, tells_rise};
@@ -13,8 +13,6 @@ use crate::ir::{Exact, Expr, Flag, Interval, Memory, Named, Real, named};
 use crate::spec::{RotorSensing, Spec};
 use std::f64::consts::TAU;
 
-/// A sixth of a turn: floor(2^32 / 6).
-pub(super) const SIXTH: i64 = 715_827_882;
 /// Angle added before the division into sectors: sector 1 begins at -30 degrees. Rounded up like
 /// the sector starts, so that a sector's first and last angle lie in that sector.
 const SECTOR_ORIGIN: i64 = 357_913_942;

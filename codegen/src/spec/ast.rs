@@ -6,7 +6,6 @@
 
 use super::alternatives::same_quantity;
 pub use super::basis::Basis;
-use super::schema;
 use super::units::{Dimension, Unit};
 use crate::diagnostics::{Diagnostic, Location, catalogue, nearest};
 use std::fmt;
@@ -183,15 +182,15 @@ impl SpecAst {
     }
 
     /// Reports a section that does not exist, and does not report the one meant as missing.
-    /// `fields`: the names that stand in it, by which it is known where its own name says nothing.
+    /// `of_fields`: the section of the fields that stand in it, by which it is known where its own name says nothing.
     pub(super) fn unknown_section(
         &mut self,
         at: &Location,
         name: &str,
         known: &[&str],
-        fields: &[&str],
+        of_fields: Option<&str>,
     ) {
-        let of_fields = schema::section_of_most(fields).filter(|right| known.contains(right));
+        let of_fields = of_fields.filter(|right| known.contains(right));
         self.malformed
             .push(catalogue::unknown_section(at, name, known, of_fields));
         if let Some(meant) = nearest(name, known).or(of_fields) {

@@ -14,7 +14,7 @@
 //! trapezoid still makes torque, with its shape cut.
 
 use super::emf_shape::{phases, proportional_currents, zero_sum_integral};
-use super::weakening::{share_of_torque, turned_set_point};
+use super::torque_share::share_of_torque;
 use super::{EmfShape, Reference, Spec};
 use std::f64::consts::FRAC_PI_3;
 
@@ -137,30 +137,6 @@ impl Envelope {
         self.line_voltage() / self.emf_peak()
     }
 
-    /// Greatest set-point at a speed, ampere.
-    pub fn set_point(&self, omega_m: f64) -> f64 {
-        let of_voltage = self.of_voltage(omega_m);
-        let current = self.max_current.min(of_voltage);
-        let current = self
-            .bus_current
-            .map_or(current, |bus| current.min(self.of_power(omega_m, bus)));
-        let turned = self.weakening.filter(|_| of_voltage < self.max_current);
-        let turned = turned.map_or(0.0, |share| {
-            // Backward, a skewed shape is another one.
-            let backward = Self {
-                emf_shape: self.emf_shape.reversed(),
-                ..*self
-            };
-            let of_backward = if backward == *self {
-                f64::INFINITY
-            } else {
-                turned_set_point(&backward, share, omega_m)
-            };
-            turned_set_point(self, share, omega_m).min(of_backward)
-        });
-        current.max(turned).max(0.0)
-    }
-
     /// Bus voltage that a set-point in ampere takes at a speed in mechanical rad/s, volt.
     pub fn bus_voltage(&self, omega_m: f64, set_point: f64) -> f64 {
         let lines = self.lines(omega_m).into_iter();
@@ -194,7 +170,7 @@ impl Envelope {
     }
 
     /// By the voltages between all legs.
-    fn of_voltage(&self, omega_m: f64) -> f64 {
+    pub(super) fn of_voltage(&self, omega_m: f64) -> f64 {
         let reach = self.line_voltage();
         let bound = |least: f64, line: Line| {
             let left = reach - line.emf * line.drop.signum();
@@ -248,7 +224,7 @@ impl Envelope {
     }
 
     /// By the power that a bus current brings: torque times speed and copper losses.
-    fn of_power(&self, omega_m: f64, bus_current: f64) -> f64 {
+    pub(super) fn of_power(&self, omega_m: f64, bus_current: f64) -> f64 {
         let power = self.v_bus * bus_current;
         let torque = self.torque_constant() * omega_m;
         let loss = self.resistance * self.squared_currents();

@@ -347,7 +347,9 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
             let known = ["motor", "board", "inverter", "controller"];
             let fields = field_names(value);
             let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
-            input.ast.unknown_section(&at, &name, &known, &fields);
+            input
+                .ast
+                .unknown_section(&at, &name, &known, schema::section_of_most(&fields));
         }
     }
     Ok(())

@@ -37,6 +37,7 @@ mod sensing;
 #[cfg(test)]
 mod tests;
 mod toml_syntax;
+mod torque_share;
 pub mod units;
 mod value;
 mod variant;
@@ -72,6 +73,6 @@ pub use sensing::{
     SensingWindow,
 };
 pub use toml_syntax::{parse_board, parse_toml};
+pub use torque_share::{MOST_TURN, share_of_torque};
 pub use variant::{apply_variant, variant_of};
-pub use weakening::{MOST_TURN, share_of_torque};
 pub use words::Word;

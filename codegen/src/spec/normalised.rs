@@ -2,7 +2,7 @@
 //! units, a fixed order of keys, every float with the fewest digits that read back the same.
 
 use super::sensing::LOW_SIDE;
-use super::weakening::share_of_torque;
+use super::torque_share::share_of_torque;
 use super::words::Words;
 use super::{
     BusCurrents, BusSource, CurrentSensing, EmfShape, InverterSpec, MotorSpec, RotorSensing,

@@ -52,7 +52,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
                 ast.malformed.push(catalogue::not_a_section(&at, name));
                 ast.excuse(name);
             } else {
-                ast.unknown_section(&at, name, &SECTIONS, &[]);
+                ast.unknown_section(&at, name, &SECTIONS, None);
             }
             continue;
         };
@@ -66,7 +66,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             "controller" => file.read_fields(&mut ast.controller, at, table),
             "assumed" => file.read_assumed(&mut ast, table, &["motor", "inverter"]),
             "source" => file.read_source(&mut ast, table),
-            _ => ast.unknown_section(&at, name, &SECTIONS, &keys(table)),
+            _ => ast.unknown_section(&at, name, &SECTIONS, schema::section_of_most(&keys(table))),
         }
     }
     // `name` stands in `[motor]` but belongs to the drive.
@@ -138,7 +138,7 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
             }
             (name, table) => {
                 let fields = table.map_or(vec![], keys);
-                ast.unknown_section(&at, name, &BOARD_SECTIONS, &fields);
+                ast.unknown_section(&at, name, &BOARD_SECTIONS, schema::section_of_most(&fields));
             }
         }
     }

@@ -61,8 +61,8 @@ pub struct Chip {
 pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
-    /// Largest error of a counted drive by the estimate fitted to all other usual ones, as a part of
-    /// the estimate.
+    /// Largest error of a counted drive by the estimate fitted to all others without intervals, as a
+    /// part of the estimate.
     pub error: f64,
     /// The same among usual drives: those that neither learn the places of their Hall sensors nor turn
     /// legs off within a period. An edge that is learnt is work of few steps, and which steps limit the
@@ -455,8 +455,8 @@ mod tests {
 
     #[test]
     fn an_estimate_has_the_error_of_drives_of_its_kind() {
-        let error = |learns_halls| CHIP.errors(learns_halls).any_cycles;
-        assert_eq!([true, false].map(error), [0.2, 0.1]);
+        let error = |is_usual| CHIP.errors(is_usual).any_cycles;
+        assert_eq!([true, false].map(error), [0.1, 0.2]);
     }
 
     #[test]

@@ -50,7 +50,10 @@ pub fn print() -> Result<(), BenchError> {
         longest.1
     );
     for circle in circles {
-        println!("circle: {}", circle.join(", "));
+        println!("circle:");
+        for (file, others) in circle {
+            println!("  {file} names {}", others.join(", "));
+        }
     }
     Ok(())
 }
@@ -109,8 +112,8 @@ impl Files {
         (longest.0, longest.1)
     }
 
-    /// Files that depend on each other, crate by crate.
-    fn circles(&self) -> Vec<Vec<String>> {
+    /// Files that depend on each other, crate by crate, each with those of its circle that it names.
+    fn circles(&self) -> Vec<Vec<(String, Vec<String>)>> {
         let mut graph: DiGraphMap<&str, ()> = DiGraphMap::new();
         for (path, text) in self.0.iter().filter(|(path, _)| is_rust(path)) {
             let (Some((root, module)), Ok(file)) = (module_of(path), syn::parse_file(text)) else {
@@ -133,7 +136,18 @@ impl Files {
             .into_iter()
             .filter(|group| group.len() > 1);
         groups
-            .map(|group| group.into_iter().map(str::to_owned).collect())
+            .map(|group| {
+                let named_by = |file: &&str| {
+                    let named = group
+                        .iter()
+                        .filter(|&&other| graph.contains_edge(file, other));
+                    (
+                        file.to_string(),
+                        named.map(|&other| other.to_owned()).collect(),
+                    )
+                };
+                group.iter().map(named_by).collect()
+            })
             .collect()
     }
 
@@ -253,6 +267,9 @@ impl<'ast> Visit<'ast> for Leaning {
         self.note(&segments);
         visit::visit_path(self, path);
     }
+
+    /// Who may name an item is no dependency.
+    fn visit_vis_restricted(&mut self, _: &'ast syn::VisRestricted) {}
 
     /// Tests may depend on the tested module.
     fn visit_item_mod(&mut self, module: &'ast syn::ItemMod) {

@@ -1,6 +1,5 @@
 //! What tells the rotor's position: Hall sensors, or an angle in every sample.
 
-use super::motor::Motor;
 use crate::diagnostics::{Collector, catalogue};
 use crate::spec::reader::Reader;
 use crate::spec::{AngleDirection, AngleSensor, RotorSource};
@@ -87,8 +86,13 @@ fn sensor(reader: &Reader, pole_pairs: Option<u32>, errors: &mut Collector) -> O
 }
 
 /// Refuses the inverter's and the controller's fields of Hall sensors beside an angle sensor.
-pub(super) fn refuse_halls(reader: &Reader, motor: &Motor, names: &[&str], errors: &mut Collector) {
-    if motor.rotor == Some(RotorSource::Angle) {
+pub(super) fn refuse_halls(
+    reader: &Reader,
+    rotor: Option<RotorSource>,
+    names: &[&str],
+    errors: &mut Collector,
+) {
+    if rotor == Some(RotorSource::Angle) {
         reader.refuse_without(errors, HALLS, names);
     }
 }

@@ -96,7 +96,7 @@ pub(super) fn read(
     } else {
         &["hall_capture"]
     };
-    angle::refuse_halls(&reader, motor, of_halls, errors);
+    angle::refuse_halls(&reader, motor.rotor, of_halls, errors);
     let sensing = match motor.rotor {
         Some(RotorSource::Halls) => {
             let capture = read_capture(&reader, (inverter, motor), errors);

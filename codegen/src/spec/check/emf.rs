@@ -4,7 +4,6 @@
 //! The phase constant is the peak EMF of a phase of the equivalent star over mechanical speed. Every
 //! basis is that times a number, which follows from the shape of the EMF.
 
-use super::agreement;
 use crate::diagnostics::{Collector, Diagnostic, catalogue, engineering};
 use crate::spec::EmfShape;
 use crate::spec::ast::Basis;
@@ -176,7 +175,8 @@ fn of_no_load(reader: &Reader) -> Option<Diagnostic> {
     })
 }
 
-/// All statements, the one that is taken first.
+/// All statements, the one that is taken first; constants of which none says its basis have a usual one, or
+/// another by [``agreement`.
 pub(super) fn read<'a>(
     reader: &Reader<'a>,
     winding: Option<Winding>,
@@ -199,7 +199,7 @@ pub(super) fn read<'a>(
         let mut all: Vec<Emf> = all.into_iter().flatten().collect();
         // A stated basis is more than a usual one.
         all.sort_by_key(Emf::is_open);
-        agreement::resolve(all, shape, errors)
+        all
     } else {
         Vec::new()
     }

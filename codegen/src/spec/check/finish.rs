@@ -10,9 +10,8 @@ use crate::spec::reader::Reader;
 use crate::spec::{ControllerSpec, CurrentSum, InverterSpec, RotorSensing, SensedPhases};
 use std::f64::consts::FRAC_PI_3;
 
-/// Default `minimum_speed` over `rated_speed`, and the most that it becomes for a fast Hall timer.
+/// Default `minimum_speed` over `rated_speed`.
 const MINIMUM_SPEED: f64 = 0.02;
-pub(super) const GREATEST_MINIMUM: f64 = 0.04;
 
 /// Default pre-charge time, second.
 const PRECHARGE: f64 = 1e-3;
@@ -154,7 +153,7 @@ fn current_sum(
 /// where that is no large one.
 fn minimum_speed(rated: f64, slowest: Option<f64>) -> f64 {
     let default = MINIMUM_SPEED * rated;
-    let slowest = slowest.filter(|slowest| *slowest <= GREATEST_MINIMUM * rated);
+    let slowest = slowest.filter(|slowest| *slowest <= relations::GREATEST_MINIMUM * rated);
     default.max(slowest.unwrap_or(0.0))
 }
 

@@ -51,7 +51,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     });
     let inverter = inverter::read(&inverter_reader, &mut errors);
     let of_halls = ["hall_glitches", "minimum_speed"];
-    angle::refuse_halls(&inverter_reader, &motor, &of_halls, &mut errors);
+    angle::refuse_halls(&inverter_reader, motor.rotor, &of_halls, &mut errors);
     let whole_controller = ast.whole_controller();
     let (controller, capture) = controller::read(
         &whole_controller,

@@ -1,7 +1,7 @@
 //! The motor's data: basis, winding and shape resolved to phase values of the equivalent star.
 
 use super::emf::{self, Emf, Winding};
-use super::{angle, emf_shape};
+use super::{agreement, angle, emf_shape};
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
 use crate::spec::model::extreme_sectors;
@@ -57,7 +57,8 @@ pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a>
     let inductance = read_winding_value(reader, errors, "inductance", winding);
     let stated = emf_shape::read(reader, errors);
     let emf_shape = stated.map(|stated| stated.shape);
-    let mut emf = emf::read(reader, winding, emf_shape, errors);
+    let constants = emf::read(reader, winding, emf_shape, errors);
+    let mut emf = agreement::resolve(constants, emf_shape, errors);
     if stated.is_some_and(|stated| stated.trace.is_some()) {
         emf::refuse_phase(&mut emf, errors);
     }

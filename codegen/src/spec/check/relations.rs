@@ -1,6 +1,5 @@
 //! Motor and inverter together: control period, bus voltage, speeds.
 
-use super::finish::GREATEST_MINIMUM;
 use super::inverter::Inverter;
 use super::motor::Motor;
 use crate::diagnostics::catalogue::{self, Part};
@@ -9,6 +8,9 @@ use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
 use crate::spec::{BusSource, CurrentSensing, Envelope, MotorSpec, Reference, RotorSensing};
 use std::f64::consts::{FRAC_PI_3, TAU};
+
+/// The most over `rated_speed` that the default of `minimum_speed` becomes for a fast Hall timer.
+pub(super) const GREATEST_MINIMUM: f64 = 0.04;
 
 /// Greatest R Ts/L: above it the current decays within a period, and prediction is useless.
 const GREATEST_DECAY: f64 = 0.5;

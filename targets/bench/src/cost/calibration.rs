@@ -18,7 +18,8 @@ use std::process::Command;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     digest: u64,
-    is_usual: bool,
+    learns_halls: bool,
+    has_intervals: bool,
     work: Times<Work>,
 }
 
@@ -45,7 +46,8 @@ pub struct Counted {
 /// One figure of a counted drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Point {
-    is_usual: bool,
+    learns_halls: bool,
+    has_intervals: bool,
     work: Work,
     time: f64,
 }
@@ -63,7 +65,8 @@ impl Calibration {
         let program = drive.generated.graph.program();
         Self {
             digest: digest(&drive.generated.interface.spec_toml),
-            is_usual: drive.generated.interface.hall_shifts.is_none() && !program.has_intervals(),
+            learns_halls: drive.generated.interface.hall_shifts.is_some(),
+            has_intervals: program.has_intervals(),
             work: work(program),
         }
     }
@@ -243,10 +246,16 @@ fn number(number: f64) -> String {
 fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     let typical = drives.iter().filter(|drive| drive.is_typical);
     let points = typical.map(|drive| {
-        let Calibration { is_usual, work, .. } = drive.calibration;
+        let Calibration {
+            learns_halls,
+            has_intervals,
+            work,
+            ..
+        } = drive.calibration;
         let figures = work.zip(drive.times.map(f64::from));
         let point = |(work, time)| Point {
-            is_usual,
+            learns_halls,
+            has_intervals,
             work,
             time,
         };
@@ -264,26 +273,28 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     Ok(Times::of(fits))
 }
 
+/// Drives whose commands have intervals are not fitted: which of their steps limit the voltage depends on the
+/// drive, and the operations do not tell it.
 fn fit(points: &[Point]) -> Result<Fit, BenchError> {
-    let usual: Vec<Point> = points
-        .iter()
-        .filter(|point| point.is_usual)
-        .copied()
-        .collect();
+    let (of_intervals, fitted): (Vec<Point>, Vec<Point>) =
+        points.iter().partition(|point| point.has_intervals);
     let off =
         |weights: &Work, point: &Point| (point.time / weighed(weights, &point.work) - 1.0).abs();
-    let mut error_of_usual = 0.0_f64;
-    for (left_out, point) in usual.iter().enumerate() {
-        let mut others = usual.clone();
+    let (mut error, mut error_of_usual) = (0.0_f64, 0.0_f64);
+    for (left_out, point) in fitted.iter().enumerate() {
+        let mut others = fitted.clone();
         others.remove(left_out);
-        error_of_usual = error_of_usual.max(off(&weights(&others)?, point));
+        let own = off(&weights(&others)?, point);
+        error = error.max(own);
+        if !point.learns_halls {
+            error_of_usual = error_of_usual.max(own);
+        }
     }
-    let weights = weights(&usual)?;
-    let unusual = points.iter().filter(|point| !point.is_usual);
-    let errors = unusual.map(|point| off(&weights, point));
+    let weights = weights(&fitted)?;
+    let of_intervals = of_intervals.iter().map(|point| off(&weights, point));
     Ok(Fit {
         weights,
-        error: errors.fold(error_of_usual, f64::max),
+        error: of_intervals.fold(error, f64::max),
         error_of_usual,
     })
 }
@@ -320,7 +331,8 @@ mod tests {
     fn a_law_of_operations_is_found_and_an_outlier_is_told() {
         let point = |add: f64, product: f64| [1.0, 0.0, add, product, 0.0, 0.0, 0.0];
         let exact = |work: Work| Point {
-            is_usual: true,
+            learns_halls: false,
+            has_intervals: false,
             work,
             time: 20.0 + 1.5 * work[2] + 4.0 * work[3],
         };
@@ -335,7 +347,7 @@ mod tests {
         // A drive that takes a quarter more changes no weight, and is the largest error of its kind.
         let usual = exact(point(35.0, 3.0));
         points.push(Point {
-            is_usual: false,
+            learns_halls: true,
             time: 1.25 * usual.time,
             ..usual
         });
@@ -343,6 +355,16 @@ mod tests {
         assert!((found.weights[2] - 1.5).abs() < 1e-6);
         assert!((found.error - 0.25).abs() < 1e-6, "{}", found.error);
         assert!(found.error_of_usual < 1e-6, "{found:?}");
+        // One with intervals is not fitted, and the largest error of all.
+        points.push(Point {
+            has_intervals: true,
+            time: 2.0 * usual.time,
+            ..usual
+        });
+        let with_intervals = fit(&points).expect("a fit");
+        assert_eq!(with_intervals.weights, found.weights);
+        assert!((with_intervals.error - 1.0).abs() < 1e-6);
+        assert!(with_intervals.error_of_usual < 1e-6);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Renderers of the laboratory's reports for HTML and terminals; JSON needs none.
 
 mod html;
+mod inline;
 pub mod lines;
 mod linked;
 mod plot;

@@ -4,7 +4,7 @@
 //! Each is written as its distance from the one before, in a letter or two ([`packed`]).
 
 use super::RenderError;
-use super::html::css;
+use super::inline::css;
 use hexagen_lab::report::plot::{Axis, Element, Label, Plot, Point, Series, Shape, Side, Stroke};
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! Tables as HTML.
 
-use super::html::{prose, sign};
+use super::inline::{prose, sign};
 use hexagen_lab::report::{Cell, Column, Group, Label, Table};
 use maud::{Markup, html as markup};
 

@@ -1,6 +1,7 @@
 //! Limits of the set-point by the bus current (section "Bus current").
 
-use super::constants::{Constants, Scale};
+use super::constants::Constants;
+use super::scale::Scale;
 use super::state::State;
 use crate::exact::{
     Coefficient, Word, all_three, both, floor_weighted, greater, input, lesser, pow2,

@@ -1,6 +1,6 @@
 //! Limits of the set-point by the bus voltage (section "Fades").
 
-use super::constants::Scale;
+use super::scale::Scale;
 use crate::exact::{Coefficient, Word, greater, lesser, round_half_up, within};
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};

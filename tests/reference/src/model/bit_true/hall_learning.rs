@@ -1,6 +1,6 @@
 //! Learning of the Hall sensors (section "Learning of the Hall sensors").
 
-use super::constants::Scale;
+use super::scale::Scale;
 use super::sectors::SIXTH;
 use crate::exact::{
     Coefficient, Word, both, either, floor_shift, greater, lesser, pow2, round_half_up, within,

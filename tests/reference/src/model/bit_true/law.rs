@@ -17,7 +17,8 @@ mod two_steps;
 mod weighted;
 mod whole;
 
-use super::constants::{Constants, Scale};
+use super::constants::Constants;
+use super::scale::Scale;
 use crate::exact::{Coefficient, Word, word};
 use crate::model::Reach;
 use crate::model::trace::Past;

@@ -1,6 +1,6 @@
 //! Ramp of the speed set-point (section "Acceleration limit").
 
-use super::constants::Scale;
+use super::scale::Scale;
 use super::slew::approached;
 use super::state::State;
 use crate::exact::{Word, floor_weighted, pow2, round_half_up};

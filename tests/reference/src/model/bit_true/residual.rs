@@ -1,6 +1,6 @@
 //! Residual watch (section "Residual watch").
 
-use super::constants::Scale;
+use super::scale::Scale;
 use super::state::State;
 use crate::exact::{Coefficient, Word, greater, pow2, round_half_up, within, word};
 use crate::model::variant::{allowed_residual, reference_gain};

@@ -1,27 +1,17 @@
 //! The rotor's angle from the timing of the Hall edges (section 4).
 
-use super::constants::{Constants, Scale};
+use super::constants::Constants;
 use super::hall_learning::{Learnt, Turn};
 use super::parts::Part;
+use super::scale::Scale;
 use super::sectors::{HALF_SIXTH, TWELFTH};
-use super::state::State;
+use super::state::{Speed, State};
 use crate::Error;
 use crate::exact::{
     Coefficient, Shift, Word, floor, greater, lesser, pow2, to_index, within, word, wrap32,
 };
 use crate::model::hall::{HallClock, HallTiming, RISE};
 use crate::model::sector::HallEvent;
-
-/// The rotor's speed, as it was seen at the last edge.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Speed<W: Word> {
-    /// Angle per tick, mean of the last turn.
-    pub omega: W,
-    /// This sector's speed over it less 1, 2^32 for 1.
-    pub rise: W,
-    /// Angle per period, signed.
-    pub step: W,
-}
 
 /// The rotor at this sample.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,42 +23,6 @@ pub struct Angle<W: Word> {
     pub sector_eff: usize,
     /// Where the edges stand.
     pub learnt: Learnt<W>,
-}
-
-/// Rise of the speed from the last turn to the coming sector.
-#[derive(Clone, Copy, Debug)]
-pub struct Rise<W> {
-    /// Of eight times the change of half a turn's time and twice the rate, with S bits less.
-    change: Shift,
-    limit: f64,
-    factor: Coefficient<W>,
-    whole: Shift,
-}
-
-impl<W: Word> Rise<W> {
-    pub fn new(scale: &Scale, clock: &HallClock) -> Result<Self, Error> {
-        let greatest = 6.0 * clock.age_max * (pow2(32) / clock.rev_min);
-        let shift = (greatest.log2().floor() - 30.0).max(2.0);
-        Ok(Self {
-            change: Shift::new(shift as u32 + 1),
-            limit: pow2(32 - shift as i32),
-            factor: scale.coefficient("k_rise", RISE * pow2(shift as i32 - 3))?,
-            whole: Shift::new(32),
-        })
-    }
-
-    /// An angle at the last turn's speed, at the coming sector's.
-    #[inline]
-    fn risen(&self, angle: W, rise: W, most: W) -> W {
-        lesser(angle + self.whole.floor_product(angle, rise), most)
-    }
-
-    #[inline]
-    fn at(&self, timing: &HallTiming<W>, rate: W) -> W {
-        let eighths = within(timing.shortened() * 8.0, -timing.rev, timing.rev);
-        let change = self.change.floor_product(eighths, rate * 2.0 + 1.0);
-        self.factor.mul(within(change, -self.limit, self.limit))
-    }
 }
 
 /// The angle of a sensor, after `timing` has followed the sample.

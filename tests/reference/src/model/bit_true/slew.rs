@@ -1,6 +1,7 @@
 //! The set-point in force (section "Slew rate").
 
-use super::constants::{Constants, Scale};
+use super::constants::Constants;
+use super::scale::Scale;
 use crate::exact::{Word, floor_weighted, greater, lesser, pow2, round_half_up, word};
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};

@@ -1,7 +1,8 @@
 //! The speed controller (section "Speed loop").
 
-use super::constants::{Constants, Scale};
+use super::constants::Constants;
 use super::fade::limited;
+use super::scale::Scale;
 use crate::exact::{
     Coefficient, Word, floor, floor_constant, floor_weighted, input, pow2, within, word,
 };

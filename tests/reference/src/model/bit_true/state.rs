@@ -3,9 +3,7 @@
 use super::constants::Constants;
 use super::hall_learning::Learnt;
 use super::parts::{Part, Parts};
-use super::rotor::Speed;
-use super::torque_learning::Torque;
-use crate::exact::{Word, word};
+use crate::exact::{Word, pow2, word};
 use crate::model::hall::HallTiming;
 use crate::model::sector;
 use crate::model::supervision::{
@@ -60,6 +58,33 @@ pub struct State<W: Word> {
     pub hysteresis: [W; 2],
     pub vector_prev: Vector,
     pub past: Past<W>,
+}
+
+/// The rotor's speed, as it was seen at the last edge.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Speed<W: Word> {
+    /// Angle per tick, mean of the last turn.
+    pub omega: W,
+    /// This sector's speed over it less 1, 2^32 for 1.
+    pub rise: W,
+    /// Angle per period, signed.
+    pub step: W,
+}
+
+/// What is learnt of the torque constant; the ratio has 28 fraction bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Torque<W> {
+    pub ratio: W,
+    pub light: W,
+}
+
+impl<W: Word> Default for Torque<W> {
+    fn default() -> Self {
+        Self {
+            ratio: word(pow2(28)),
+            light: word(0.0),
+        }
+    }
 }
 
 /// Number of a vector, 0 to 15.

@@ -1,29 +1,13 @@
 //! Learning of the torque constant (section "Learning of the torque constant").
 
-use super::constants::Scale;
-use super::state::State;
+use super::scale::Scale;
+use super::state::{State, Torque};
 use crate::emf_shape::EmfShape;
 use crate::exact::{Coefficient, Shift, Word, either, lesser, pow2, round_half_up, within, word};
 use crate::model::variant::{LITTLE, SETTLED, flux_along, reference_gain};
 use crate::spec::Switch;
 use crate::{Error, Spec};
 use std::f64::consts::TAU;
-
-/// The words; the ratio has 28 fraction bits.
-#[derive(Clone, Copy, Debug)]
-pub struct Torque<W> {
-    pub ratio: W,
-    pub light: W,
-}
-
-impl<W: Word> Default for Torque<W> {
-    fn default() -> Self {
-        Self {
-            ratio: word(pow2(28)),
-            light: word(0.0),
-        }
-    }
-}
 
 impl<W: Word> Torque<W> {
     /// Bits of a torque, in those of the stated constant.

@@ -1,6 +1,7 @@
 //! Field weakening (section "Field weakening").
 
-use super::constants::{Constants, Scale};
+use super::constants::Constants;
+use super::scale::Scale;
 use crate::exact::{
     Coefficient, Shift, Word, both, either, floor_shift, greater, pow2, round_half_up, within, word,
 };
