@@ -104,6 +104,7 @@ fn no_profile_has_more_torque_than_the_bound() {
         emf_constant: 0.0824,
         t_s: 50e-6,
         v_bus: 48.0,
+        pairs: false,
         reach: 1.0,
         max_current: peak,
         bus_current: None,

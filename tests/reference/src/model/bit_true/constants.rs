@@ -10,9 +10,7 @@ use crate::emf_motion::EmfMotion;
 use crate::exact::{Coefficient, Shift, Word, floor_constant, pow2, round_half_up};
 use crate::model::hall::HallClock;
 use crate::model::variant::{Variant, emf_error_limit, emf_limit, reference_gain, stretch_mean};
-use crate::{
-    Controller, DiscretePhase, EmfShape, EmfSource, Error, FormatTable, Saturation, Spec, Switch,
-};
+use crate::{Controller, DiscretePhase, EmfShape, EmfSource, Error, Saturation, Spec, Switch};
 
 /// All constants of a step besides state and set-point. Coefficients that the variant does not use
 /// are zero.

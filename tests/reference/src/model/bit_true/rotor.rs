@@ -3,14 +3,10 @@
 use super::constants::Constants;
 use super::hall_learning::{Learnt, Turn};
 use super::parts::Part;
-use super::scale::Scale;
 use super::sectors::{HALF_SIXTH, TWELFTH};
 use super::state::{Speed, State};
-use crate::Error;
-use crate::exact::{
-    Coefficient, Shift, Word, floor, greater, lesser, pow2, to_index, within, word, wrap32,
-};
-use crate::model::hall::{HallClock, HallTiming, RISE};
+use crate::exact::{Word, floor, greater, lesser, pow2, to_index, word, wrap32};
+use crate::model::hall::{HallClock, HallTiming};
 use crate::model::sector::HallEvent;
 
 /// The rotor at this sample.

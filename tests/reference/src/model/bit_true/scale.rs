@@ -10,7 +10,7 @@ const WORD_MAX: f64 = 2_147_483_647.0;
 /// Scaling of physical values to words, and the plant of the coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale<'a> {
-    formats: &'a FormatTable,
+    pub formats: &'a FormatTable,
     pub variant: Variant,
     pub phase: DiscretePhase,
     /// Phase resistance, ohm.

@@ -2,8 +2,9 @@
 
 use super::Inputs;
 use crate::exact::{Coefficient, Word, all_three, both, greater, halve, lesser, within, word};
-use crate::model::bit_true::constants::{Constants, Scale};
+use crate::model::bit_true::constants::Constants;
 use crate::model::bit_true::limit::{self, Limited};
+use crate::model::bit_true::scale::Scale;
 use crate::{CommonMode, Error, Saturation, Spec};
 
 /// Policy and largest compare value.

@@ -2,7 +2,7 @@
 
 use super::Inputs;
 use crate::exact::{Coefficient, Word, round_half_up, within};
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
 

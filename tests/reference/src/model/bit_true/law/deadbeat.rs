@@ -4,7 +4,7 @@ use super::Inputs;
 use super::held::Held;
 use crate::Error;
 use crate::exact::{Coefficient, Word, both};
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::trace::Past;
 
 /// Form of the voltage.

@@ -5,7 +5,7 @@ use super::two_steps::TwoSteps;
 use super::weighted::Weights;
 use super::{Decision, Inputs};
 use crate::exact::Word;
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::vectors;
 use crate::{Error, Spec, Switch};
 

@@ -4,7 +4,7 @@
 use super::Inputs;
 use crate::Error;
 use crate::exact::{Coefficient, Word, both, within, word};
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::trace::Past;
 
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 use super::common_mode::CommonModeRule;
 use super::{Decision, Inputs, pulses};
 use crate::exact::{Coefficient, Word, both, word};
-use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::Limited;
+use crate::model::bit_true::scale::Scale;
 use crate::model::variant::reference_gain;
 use crate::{Error, Saturation, Spec};
 

@@ -6,8 +6,8 @@ use super::deadbeat::Form;
 use super::intervals::{Modulated, Table2};
 use super::{Decision, Inputs, pulses};
 use crate::exact::Word;
-use crate::model::bit_true::constants::Scale;
 use crate::model::bit_true::limit::Limited;
+use crate::model::bit_true::scale::Scale;
 use crate::{Error, Modulation, Saturation, Spec};
 
 #[derive(Clone, Debug)]

@@ -5,7 +5,7 @@ use super::whole::Whole;
 use super::{Decision, Inputs};
 use crate::exact::{Coefficient, Word, both, floor_shift, round_half_up, word};
 use crate::model::Reach;
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::switching::{self, Switching};
 use crate::model::trace::Past;
 

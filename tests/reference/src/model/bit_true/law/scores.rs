@@ -6,7 +6,7 @@ use super::whole::Whole;
 use super::{Decision, Inputs};
 use crate::exact::{Shift, Word, both, floor, halve, round_half_up, within, word};
 use crate::model::Reach;
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error, Spec};
 

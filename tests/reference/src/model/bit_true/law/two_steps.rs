@@ -3,7 +3,7 @@
 use super::Inputs;
 use super::scores::{Choice, score_by_reach};
 use crate::exact::{Coefficient, Word, word};
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::vectors;
 use crate::{Candidates, Error};
 

@@ -3,7 +3,7 @@
 use super::Inputs;
 use super::scores::{Choice, first_least};
 use crate::exact::{Coefficient, Word, halve, round_half_up, word};
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::vectors;
 use crate::{Error, Spec, Switch};
 

@@ -3,7 +3,7 @@
 use super::common_mode::CommonModeRule;
 use super::{Command, Inputs};
 use crate::exact::{Coefficient, Word, floor, word};
-use crate::model::bit_true::constants::Scale;
+use crate::model::bit_true::scale::Scale;
 use crate::model::vectors;
 use crate::{Error, Spec};
 use hexagen::{LegState, Legs};
