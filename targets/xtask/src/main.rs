@@ -32,7 +32,8 @@ enum Command {
     Test,
     /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
     /// all products of options, the pages of all motors, `commands`, `programs`, `editors`, the
-    /// installed program, and the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more
+    /// installed program, the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more;
+    /// then `mutants`, another sample each day
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]
@@ -91,7 +92,8 @@ fn main() -> ExitCode {
             .and_then(|()| steps::certificate_checker())
             .and_then(|()| editors::install())
             .and_then(|()| checks())
-            .and_then(|()| steps::run(&steps::long_checks(steps)?)),
+            .and_then(|()| steps::run(&steps::long_checks(steps)?))
+            .and_then(|()| mutants::score(&mutants::Options::tonight())),
         Command::Packages => {
             packages::check_contents().and_then(|()| steps::run(&[packages::pack(true)?]))
         }
