@@ -17,6 +17,13 @@ use std::f64::consts::TAU;
 /// the sector starts, so that a sector's first and last angle lie in that sector.
 const SECTOR_ORIGIN: i64 = 357_913_942;
 
+/// Text of the stage that measures the speed.
+const MEASUREMENT: &[&str] = &[
+    "Speed from the last six intervals: the placement errors of the sensors average out.",
+    "",
+    "The first interval in a direction fills all six; a jump or a reversal restarts the measurement.",
+];
+
 /// Names of the last six intervals, the latest first.
 const INTERVALS: [&str; 6] = ["t1", "t2", "t3", "t4", "t5", "t6"];
 
@@ -152,6 +159,27 @@ struct Edges<'b> {
 pub fn direction_word<'b>(l: &Lowering<'b>) -> Memory<'b> {
     let doc = "Direction of the last Hall edge: 1 forward, -1 backward, 0 before the first.";
     l.b.memory("direction", 0, Interval::new(-1, 1), doc)
+}
+
+/// Angle per tick of a turn that takes so many ticks, at most the greatest speed's.
+fn angle_per_tick<'b>(l: &Lowering<'b>, rev: Expr<'b>) -> Expr<'b> {
+    let doc = "Ticks of an electrical turn at the greatest speed.";
+    let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
+    rev.max(least).turn_over().named("rate")
+}
+
+/// Angle per tick and signed angle per period, 0 until a second edge was seen.
+fn seen_speed<'b>(
+    edges: Expr<'b>,
+    is_forward: Flag<'b>,
+    [rate, turn]: [Expr<'b>; 2],
+) -> [Expr<'b>; 2] {
+    named! {
+        let known = edges.is(2);
+        let omega_seen = known.choose(rate, 0);
+        let step_angle_seen = known.choose(is_forward.sign(turn.named("turn")), 0);
+    }
+    [omega_seen, step_angle_seen]
 }
 
 /// Compares two sectors; added to the open stage.
@@ -355,16 +383,7 @@ impl<'b> RotorWords<'b> {
         let (edges, rev, omega) = (self.edges.read(), self.rev.read(), self.omega.read());
         let (step_angle, rise) = (self.step_angle.read(), self.rise.map(Memory::read));
         let intervals = self.intervals.map(Memory::read);
-        l.b.guarded_stage(
-            "measure_speed",
-            hall.edge,
-            true,
-            &[
-                "Speed from the last six intervals: the placement errors of the sensors average out.",
-                "",
-                "The first interval in a direction fills all six; a jump or a reversal restarts the measurement.",
-            ],
-        );
+        l.b.guarded_stage("measure_speed", hall.edge, true, MEASUREMENT);
         let turned = turned(l, hall, old);
         let age_max = i64::from(l.spec.age_max());
         named! {
@@ -381,27 +400,22 @@ impl<'b> RotorWords<'b> {
             let rev_seen = turn(l, seen);
         }
         let over = (self.over_speed).map(|watch| watch.seen(l, edges_counted.is(2), rev_seen));
-        let doc = "Ticks of an electrical turn at the greatest speed.";
-        let least = l.number("rev_min", i64::from(l.spec.rev_min()), doc);
-        let rate = rev_seen.max(least).turn_over().named("rate");
+        let rate = angle_per_tick(l, rev_seen);
         let rise = rise.map(|old| (speed_rise(l, seen, [rev_seen, rate]), old));
-        let learnt = self.learning.zip(observed).map(|(learning, seen)| {
-            let edge = Edge {
-                forward: to_next,
-                again,
-                interval,
-                rate,
-                rev: rev_seen,
-                rev_before: rev,
-            };
-            (learning.at_edge(l, hall, &edge, &seen), seen.last)
-        });
+        let edge = Edge {
+            forward: to_next,
+            again,
+            interval,
+            rate,
+            rev: rev_seen,
+            rev_before: rev,
+        };
+        let learnt = self
+            .learning
+            .zip(observed)
+            .map(|(learning, seen)| (learning.at_edge(l, hall, &edge, &seen), seen.last));
         let turn = turn_of_period(l, rate, rise.map(|(rise, _)| rise));
-        named! {
-            let known = edges_counted.is(2);
-            let omega_seen = known.choose(rate, 0);
-            let step_angle_seen = known.choose(to_next.sign(turn.named("turn")), 0);
-        }
+        let [omega_seen, step_angle_seen] = seen_speed(edges_counted, to_next, [rate, turn]);
         let [direction, counted, rev, omega, step_angle] = l.b.join([
             ("direction_next", turned.direction, old),
             ("edges_now", edges_counted, edges),
@@ -411,15 +425,7 @@ impl<'b> RotorWords<'b> {
         ]);
         let placed = learnt.map(|(learnt, last)| learnt.keep(l, last));
         let rise = rise.map(|(seen, old)| l.b.join([("rise_now", seen, old)])[0]);
-        if let Some((word, rise)) = self.rise.zip(rise) {
-            word.set(rise);
-        }
-        self.direction.set(direction);
-        self.age_prev.set(age);
-        self.rev.set(rev);
-        self.keep_intervals(l, seen, intervals);
-        self.keep_count(l, over);
-        Edges {
+        let edges = self.keep(Edges {
             direction,
             counted,
             rev,
@@ -428,7 +434,21 @@ impl<'b> RotorWords<'b> {
             step_angle,
             age,
             placed,
+        });
+        self.keep_intervals(l, seen, intervals);
+        self.keep_count(l, over);
+        edges
+    }
+
+    /// Sets the state words of an edge.
+    fn keep(&self, edges: Edges<'b>) -> Edges<'b> {
+        if let Some((word, rise)) = self.rise.zip(edges.rise) {
+            word.set(rise);
         }
+        self.direction.set(edges.direction);
+        self.age_prev.set(edges.age);
+        self.rev.set(edges.rev);
+        edges
     }
 
     /// Joins the intervals of the open guarded stage and sets their state words.

@@ -7,7 +7,9 @@
 //! in place of sqrt(3). The hexagon of the pair vectors is |v_x| <= V_BUS/2.
 
 use super::limit::within_bus;
-use super::{Bus, CommonModeRule, Hexagon, LOW, Lowering, OFF, PULSED, Priority, compare_of};
+use super::{
+    Bus, CommonModeRule, Hexagon, LOW, Limited, Lowering, OFF, PULSED, Priority, compare_of,
+};
 use crate::design::vectors::OFF_PHASE;
 use crate::ir::{Coefficient, Expr, Flag, Lut, Named as _, Output, Phases, named, pick};
 use crate::spec::ZeroVector;
@@ -74,34 +76,7 @@ impl<'b> Table2<'b> {
         u: Phases<'b>,
     ) -> Modulated<'b> {
         let reach = CommonModeRule::of_vectors(l).reach(l, self.bus);
-        let doc = "Plane of the limit: the phase voltages, or outside commutations their differences, whose hexagon is three-phase.";
-        l.b.stage("choose_plane", &[doc]);
-        named! {
-            let pairing = !self.commutating;
-        }
-        let plane = |volts: Phases<'b>, name: &str| {
-            let lines = lines(volts.with_c(name)).pair();
-            volts.zip(lines, |volts, line| pairing.choose(line, volts))
-        };
-        named! {
-            let u_plane = plane(u, "u_three");
-            let v_plane = pairing.choose(reach.volts + (reach.volts >> 1), reach.volts);
-        }
-        let hexagon = Hexagon {
-            bus: Bus {
-                volts: v_plane,
-                ..self.bus
-            },
-            third: self.third,
-            lifts: false,
-        };
-        let priority = priority.of_plane(|e| {
-            named! {
-                let e_plane = plane(e, "e_three");
-            }
-            e_plane
-        });
-        let limited = hexagon.limit(l, priority, u_plane);
+        let (limited, pairing) = self.limit(l, priority, u, reach);
         let doc = "Neighbouring three-phase vectors: two legs high, then one.";
         l.b.stage("share_three", &[doc]);
         let three = of_three_phases(l, limited.centred);
@@ -143,6 +118,45 @@ impl<'b> Table2<'b> {
             },
             u: Phases([v_a, v_b]),
         }
+    }
+
+    /// The voltage within the hexagon of the vectors in use, in whose plane it is three-phase, and whether these are
+    /// pair vectors.
+    fn limit(
+        &self,
+        l: &Lowering<'b>,
+        priority: Priority<impl FnOnce() -> Phases<'b>>,
+        u: Phases<'b>,
+        reach: Bus<'b>,
+    ) -> (Limited<'b>, Flag<'b>) {
+        let doc = "Plane of the limit: the phase voltages, or outside commutations their differences, whose hexagon is three-phase.";
+        l.b.stage("choose_plane", &[doc]);
+        named! {
+            let pairing = !self.commutating;
+        }
+        let plane = |volts: Phases<'b>, name: &str| {
+            let lines = lines(volts.with_c(name)).pair();
+            volts.zip(lines, |volts, line| pairing.choose(line, volts))
+        };
+        named! {
+            let u_plane = plane(u, "u_three");
+            let v_plane = pairing.choose(reach.volts + (reach.volts >> 1), reach.volts);
+        }
+        let hexagon = Hexagon {
+            bus: Bus {
+                volts: v_plane,
+                ..self.bus
+            },
+            third: self.third,
+            lifts: false,
+        };
+        let priority = priority.of_plane(|e| {
+            named! {
+                let e_plane = plane(e, "e_three");
+            }
+            e_plane
+        });
+        (hexagon.limit(l, priority, u_plane), pairing)
     }
 
     /// Legs of the zero vector outside commutations.

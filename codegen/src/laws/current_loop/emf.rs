@@ -42,6 +42,13 @@ pub(super) fn plausible<'b>(l: &Lowering<'b>, e: Expr<'b>) -> Expr<'b> {
     e.within(l.voltage("e_max", l.bus_interval().high, PLAUSIBLE))
 }
 
+/// Text of the stage that corrects the error of the modelled EMF.
+const CORRECTION: &[&str] = &[
+    "Correction of the EMF error by the components of the residual along the shape (q) and across it (d), which are",
+    "2/3 and 2/sqrt(3) of these sums, with a gain of 3/32. The d component is stored over sqrt(3). Without an angle it",
+    "stays.",
+];
+
 impl<'b> CurrentLoop<'_, 'b> {
     /// EMF over the target period and over the present one; none if the law needs none. `outgoing`
     /// is the outgoing phase, 0 to 2.
@@ -145,18 +152,12 @@ impl<'b> CurrentLoop<'_, 'b> {
         [set_point, v_bus]: [Expr<'b>; 2],
     ) -> Option<Emf<'b>> {
         let l = self.l;
-        let memories = words.emf_error?;
+        let observer = words.observer?;
+        let memories = observer.emf_error;
         let e_model = model_target_emf(l, rotor, self.options.delay, self.design.e_limit);
         let residual = self.emf_residual(words, i)?;
         let lines = shape_lines(shape.unit);
-        l.b.stage(
-            "correct_emf_error",
-            &[
-                "Correction of the EMF error by the components of the residual along the shape (q) and across it (d), which are",
-                "2/3 and 2/sqrt(3) of these sums, with a gain of 3/32. The d component is stored over sqrt(3). Without an angle it",
-                "stays.",
-            ],
-        );
+        l.b.stage("correct_emf_error", CORRECTION);
         named! {
             let learnt = residual.map(|volts| rotor.tracking.choose(volts, 0));
         }
@@ -197,10 +198,10 @@ impl<'b> CurrentLoop<'_, 'b> {
             });
         }
         // The last step's target is the period that begins now.
-        let expected = words.e_next.map(read);
+        let expected = observer.e_next.map(read);
         Some(Emf {
             target: e,
-            present: expected.or_else(|| words.net_next.is_none().then_some(e)),
+            present: expected.or_else(|| observer.net_next.is_none().then_some(e)),
             error: Some([q, d]),
             counts,
         })
@@ -216,7 +217,7 @@ impl<'b> CurrentLoop<'_, 'b> {
                 "K (i - i_prev) + R i_prev: the EMF beyond the expected one.",
             ],
         );
-        let (net, i_prev) = (read(words.net_prev?), read(words.i_prev?));
+        let (net, i_prev) = (read(words.observer?.net_prev), read(words.i_prev?));
         let open = self.behind_impedance(net, i_prev, i, sight);
         named! {
             let residual = open.map(|volts| self.plausible_error(volts));

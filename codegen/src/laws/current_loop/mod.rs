@@ -204,9 +204,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let tracked = self.track(&words);
         l.b.end_tracking();
         let currents = third_current(l, &tracked.sample);
-        let sector_seen = tracked
-            .sector
-            .unwrap_or_else(|| sector_of(l, &tracked.sample));
+        let sector_seen = (tracked.sector).unwrap_or_else(|| sector_of(l, &tracked.sample));
         let sector = tracked.ahead.unwrap_or(sector_seen);
         let demand = self.demand(set_point, &words, &tracked);
         let j = demand.j;
@@ -217,35 +215,26 @@ impl<'b> CurrentLoop<'_, 'b> {
         let doc = "Mean of three legs.";
         let third = l.coefficient("k_third", 1.0 / 3.0, options.word, doc, "1/3");
         let bus = set_point.read_bus(l);
-        let (reference, weakened) = match words.weakening.zip(shape) {
-            Some((weakening, shape)) => {
-                let (reference, weakened) = weakening.reference(l, &shape, j, along);
-                (reference, Some(weakened))
-            }
-            None => (along, None),
-        };
+        let weakened = words
+            .weakening
+            .zip(shape)
+            .map(|(weakening, shape)| weakening.reference(l, &shape, j, along));
+        let (reference, weakened) =
+            weakened.map_or((along, None), |(turned, weakened)| (turned, Some(weakened)));
         let outgoing = commutation.map(|commutation| commutation.outgoing);
         let rotor = tracked.rotor.as_ref();
-        let emf = self.emf(
-            &words,
-            currents,
-            sector_seen,
-            (rotor.map(|rotor| (rotor, shape)), j, bus.volts),
-            third,
-            outgoing,
-        );
+        let turning = (rotor.map(|rotor| (rotor, shape)), j, bus.volts);
+        let emf = self.emf(&words, currents, sector_seen, turning, third, outgoing);
         let (e, e_now) = (emf.map(|emf| emf.target), emf.and_then(|emf| emf.present));
         let turned = rotor.filter(|_| self.uses_angle());
-        self.tell(
-            [e, e_now],
-            demand.speed.or(turned.map(|rotor| rotor.step_angle)),
-        );
+        let told_speed = demand.speed.or(turned.map(|rotor| rotor.step_angle));
+        self.tell([e, e_now], told_speed);
         let off_leg = self.off_leg(bus, third);
         let commanded = words.v_cmd.map(read);
         let now = commanded.or_else(|| self.applied_now(&words, currents, e_now, &off_leg));
-        let net = words.net_next.map(read).or_else(|| {
-            words.net_prev?;
-            net_voltage(now, e_now)
+        let net = words.observer.and_then(|observer| {
+            let next = observer.net_next.map(read);
+            next.or_else(|| net_voltage(now, e_now))
         });
         Front {
             words,
@@ -333,7 +322,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         };
         if let Some(timing) = words.rotor {
             // With an angle, edges are evaluated in every period.
-            let across = words.emf_error.map(|[_, across]| across);
+            let across = words.observer.map(|observer| observer.emf_error[1]);
             let rotor = timing.track(l, &hall, &tracked.sample, across);
             hall.sector_prev.set(hall.sector);
             self.follow_rotor(&mut tracked, words, rotor);
@@ -358,7 +347,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             tracked.sector = Some(seen);
             tracked.ahead = Some(advanced_sector(l, advance, seen, &rotor));
         }
-        if let Some((learning, [along, _])) = words.torque.zip(words.emf_error) {
+        if let Some((learning, observer)) = words.torque.zip(words.observer) {
+            let [along, _] = observer.emf_error;
             learning.learn(l, &rotor, along.read());
         }
         tracked.direction = Some(rotor.direction);
@@ -519,6 +509,19 @@ impl<'b> CurrentLoop<'_, 'b> {
         Deadbeat { u, shifts }
     }
 
+    /// Net voltage of the voltage that is remembered as applied.
+    fn net_of_applied(
+        &self,
+        front: &Front<'b>,
+        v_cmd: Option<Phases<'b>>,
+        applied: Option<Applied<'b>>,
+    ) -> Option<Phases<'b>> {
+        named! {
+            let net = self.applied_to_remember(front, v_cmd, applied)? - front.e?;
+        }
+        Some(net)
+    }
+
     /// Step 12: state for the next step. `v_cmd`: the commanded voltages; `applied`: the terminal
     /// voltages in their place, for commands with an off leg.
     pub fn remember(
@@ -563,23 +566,18 @@ impl<'b> CurrentLoop<'_, 'b> {
             );
         }
         keep(words.e_prev, front.e_now);
-        keep(words.e_next, front.e);
-        if words.net_prev.is_some() {
-            let net = front.net.or_else(|| {
+        if let Some(observer) = words.observer {
+            keep(observer.e_next, front.e);
+            let of_applied = || self.net_of_applied(front, v_cmd, applied);
+            keep(Some(observer.net_prev), front.net.or_else(of_applied));
+            if let (Some(_), Some((u, e))) = (observer.net_next, v_cmd.zip(front.e)) {
                 named! {
-                    let net = self.applied_to_remember(front, v_cmd, applied)? - front.e?;
+                    let net = u - e;
                 }
-                Some(net)
-            });
-            keep(words.net_prev, net);
-        }
-        if let (Some(_), Some((u, e))) = (words.net_next, v_cmd.zip(front.e)) {
-            named! {
-                let net = u - e;
+                keep(observer.net_next, Some(net));
             }
-            keep(words.net_next, Some(net));
+            keep(Some(observer.emf_error), front.emf_error.map(Phases));
         }
-        keep(words.emf_error, front.emf_error.map(Phases));
         keep(words.i_prev, Some(front.currents.pair()));
         if let Some(off_prev) = words.off_prev {
             let off = match words.t_cmd {

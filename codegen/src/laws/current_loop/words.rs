@@ -78,20 +78,27 @@ pub struct Words<'b> {
     pub off_prev: Option<Memory<'b>>,
     /// EMF expected for the last period; of an estimate.
     pub e_prev: Option<[Memory<'b>; 2]>,
-    /// EMF expected of the period that begins now; of an observer whose command may turn a leg off.
-    pub e_next: Option<[Memory<'b>; 2]>,
-    /// Net voltage of the last period; of an observer.
-    pub net_prev: Option<[Memory<'b>; 2]>,
-    /// Net voltage of the period that begins now; of an observer whose commands drive every leg.
-    pub net_next: Option<[Memory<'b>; 2]>,
-    /// Error of the modelled EMF, q and d.
-    pub emf_error: Option<[Memory<'b>; 2]>,
+    /// Of an observer.
+    pub observer: Option<ObserverWords<'b>>,
     /// Field weakening.
     pub weakening: Option<FieldWeakening<'b>>,
     /// Residual watch.
     pub residual: Option<ResidualWatch<'b>>,
     /// Learning of the torque constant.
     pub torque: Option<TorqueLearning<'b>>,
+}
+
+/// Memory of the EMF observer.
+#[derive(Clone, Copy, Debug)]
+pub struct ObserverWords<'b> {
+    /// EMF expected of the period that begins now; for commands that may turn a leg off.
+    pub e_next: Option<[Memory<'b>; 2]>,
+    /// Net voltage of the last period.
+    pub net_prev: [Memory<'b>; 2],
+    /// Net voltage of the period that begins now; for commands that drive every leg.
+    pub net_next: Option<[Memory<'b>; 2]>,
+    /// Error of the modelled EMF, q and d.
+    pub emf_error: [Memory<'b>; 2],
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
@@ -125,6 +132,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let needs_rotor = self.needs_rotor();
         let sensor = l.spec.angle_sensor();
         let needs_edges = needs_rotor && sensor.is_none();
+        let angle = sensor.filter(|_| needs_rotor);
         let fade = BusFade::new(l, set_point);
         let needs_direction = needs.commutation || fade.is_some();
         // The EMF of the last period is computed.
@@ -138,18 +146,12 @@ impl<'b> CurrentLoop<'_, 'b> {
         let volts = Interval::symmetric(l.bus_interval().high);
         let is_delayed = options.delay == 1;
         let needs_command = is_delayed && !needs.off_leg && !self.holds_emf() && !observes;
-        let nets = Interval::symmetric(l.bus_interval().high + e_bound);
         Words {
             sector_prev: (needs_edges || needs_direction).then(|| sector_word(l)),
             rotor: needs_edges.then(|| RotorWords::new(l)),
-            angle: sensor
-                .filter(|_| needs_rotor)
-                .map(|sensor| AngleWords::new(l, sensor)),
+            angle: angle.map(|sensor| AngleWords::new(l, sensor)),
             direction: (needs_direction && !needs_rotor).then(|| direction_word(l)),
-            speed: options
-                .speed
-                .zip(set_point.speed)
-                .map(|(options, words)| SpeedRegulator::new(l, options, words, set_point)),
+            speed: self.speed_regulator(set_point),
             fade,
             slew: options
                 .slew_rate
@@ -172,24 +174,38 @@ impl<'b> CurrentLoop<'_, 'b> {
                 let doc = "EMF that the last step expected for the last period.";
                 l.memories(["e_a_prev", "e_b_prev"], range, doc)
             }),
-            e_next: (observes && is_delayed && needs.off_leg).then(|| {
-                let range = Interval::symmetric(e_bound);
-                let doc = "EMF that the last step expected for the period that begins now.";
-                l.memories(["e_a_next", "e_b_next"], range, doc)
-            }),
-            net_prev: observes.then(|| {
-                let doc = "Net voltage of the last period: the one applied less the EMF that was expected.";
-                l.memories(["net_a_prev", "net_b_prev"], nets, doc)
-            }),
-            net_next: (observes && is_delayed && !needs.off_leg).then(|| {
-                let doc = "Net voltage of the period that begins now: the last step's voltage less the EMF that it expected.";
-                l.memories(["net_a_next", "net_b_next"], nets, doc)
-            }),
-            emf_error: observes.then(|| self.emf_error_words()),
+            observer: observes.then(|| self.observer_words(e_bound)),
             weakening: (options.field_weakening).then(|| FieldWeakening::new(l, set_point)),
             residual: (options.residual_periods)
                 .map(|periods| ResidualWatch::new(l, periods, set_point)),
             torque: (options.learning.torque).then(|| TorqueLearning::new(l, set_point)),
+        }
+    }
+
+    fn speed_regulator(&self, set_point: &SetPointWords<'b>) -> Option<SpeedRegulator<'b>> {
+        let (options, words) = (self.options.speed?, set_point.speed?);
+        Some(SpeedRegulator::new(self.l, options, words, set_point))
+    }
+
+    fn observer_words(&self, e_bound: i64) -> ObserverWords<'b> {
+        let (l, has_off_leg) = (self.l, self.needs.off_leg);
+        let is_delayed = self.options.delay == 1;
+        let nets = Interval::symmetric(l.bus_interval().high + e_bound);
+        ObserverWords {
+            e_next: (is_delayed && has_off_leg).then(|| {
+                let range = Interval::symmetric(e_bound);
+                let doc = "EMF that the last step expected for the period that begins now.";
+                l.memories(["e_a_next", "e_b_next"], range, doc)
+            }),
+            net_prev: {
+                let doc = "Net voltage of the last period: the one applied less the EMF that was expected.";
+                l.memories(["net_a_prev", "net_b_prev"], nets, doc)
+            },
+            net_next: (is_delayed && !has_off_leg).then(|| {
+                let doc = "Net voltage of the period that begins now: the last step's voltage less the EMF that it expected.";
+                l.memories(["net_a_next", "net_b_next"], nets, doc)
+            }),
+            emf_error: self.emf_error_words(),
         }
     }
 

@@ -134,18 +134,12 @@ impl<'l, 'b> Regulator<'l, 'b> {
             l.state_phase_volts("integral", integral_now, INTEGRAL);
             kept(memories, integral_now)
         };
-        let table2 = front.table2(self.options.zero);
-        if let Some(table2) = table2.filter(|_| self.options.modulation == PiModulation::Table2) {
+        if self.options.modulation == PiModulation::Table2
+            && let Some(table2) = front.table2(self.options.zero)
+        {
             let modulated = table2.modulate(l, priority, u);
-            let remembered = integrate(modulated.u).to_vec();
-            step.remember(
-                front,
-                modulated.command,
-                Some(modulated.u),
-                None,
-                remembered,
-            );
-            return;
+            let (remembered, volts) = (integrate(modulated.u).to_vec(), Some(modulated.u));
+            return step.remember(front, modulated.command, volts, None, remembered);
         }
         let common_mode = CommonModeRule::new(l, self.options.common_mode);
         let hexagon = Hexagon {
