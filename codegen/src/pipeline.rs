@@ -193,6 +193,7 @@ fn warn_of_bus(spec: &Spec, origins: &Origins) -> Option<Diagnostic> {
                 let is_turned = envelope.weakening.is_some();
                 !is_turned && is_of_board && spec.inverter.bus.takes(*taken)
             }),
+            pairs: envelope.pairs,
             inductive: (inductive > emf.max(drop))
                 .then(|| (inductance(), spec.motor.pole_pairs, inductive)),
         };

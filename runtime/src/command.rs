@@ -184,6 +184,9 @@ impl defmt::Format for Legs {
 /// let two = Intervals::new([900, 1500], [[Pulsed, Low, Off], [Pulsed, Off, Low], [Low; 3]]);
 /// assert_eq!(two.state()[0], [Pulsed, Low, Off]);
 /// assert_eq!(two.on(), [Some(1500), Some(0), Some(0)]);
+/// // Ends 900 = 0x384, 1500 = 0x5dc; states c, b, a in two bits each: 0b10_01_00, 0b01_10_00, 0b01_01_01.
+/// assert_eq!(two.to_bits(), 0x0015_1824_05dc_0384);
+/// assert_eq!(Intervals::from_bits(two.to_bits()), two);
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
@@ -253,11 +256,11 @@ impl Intervals {
         self.0
     }
 
-    /// The intervals with the bits of [`to_bits`](Self::to_bits).
+    /// The intervals with the bits of [`to_bits`](Self::to_bits); others have no effect.
     #[inline]
     #[must_use]
     pub const fn from_bits(bits: u64) -> Self {
-        Self(bits)
+        Self(bits & 0x003f_3f3f_ffff_ffff)
     }
 }
 

@@ -385,12 +385,11 @@ impl<'b> RotorWords<'b> {
         let intervals = self.intervals.map(Memory::read);
         l.b.guarded_stage("measure_speed", hall.edge, true, MEASUREMENT);
         let turned = turned(l, hall, old);
-        let age_max = i64::from(l.spec.age_max());
         named! {
             let to_next = turned.forward;
             let to_previous = turned.backward;
             let step_ok = to_next | to_previous;
-            let interval = (age_before - age).clamp(1, greatest_age(l, age_max));
+            let interval = (age_before - age).clamp(1, greatest_age(l, l.spec.age_max().into()));
             let again = step_ok & (turned.direction.is(old) & edges.is_at_least(1));
             let edges_counted = step_ok.choose(again.choose(2, 1), 0);
             let fill = again & edges.is(1);

@@ -24,7 +24,7 @@ pub(super) fn list<'a>(times: impl Iterator<Item = &'a StepTime>) -> Vec<String>
         return vec![];
     };
     let estimated = if times.iter().any(|time| time.errors.is_some()) {
-        " Where an error stands in brackets, the figure before it is estimated from the operations of the step: it is the largest among the counted drives, each estimated from the others; those that learn their Hall sensors count for such drives only."
+        " Where an error stands in brackets, the figure before it is estimated from the operations of the step: it is the largest among the counted drives, each estimated from the others; those that learn their Hall sensors, or turn legs off within a period, count for such drives only."
     } else {
         ""
     };

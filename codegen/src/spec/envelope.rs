@@ -59,9 +59,9 @@ pub struct Envelope {
 }
 
 /// Voltage between two legs over one period: volt per ampere of set-point, and volt.
-struct Line {
-    drop: f64,
-    emf: f64,
+pub(super) struct Line {
+    pub drop: f64,
+    pub emf: f64,
 }
 
 impl Envelope {
@@ -169,16 +169,6 @@ impl Envelope {
         (decay, self.resistance / (1.0 - decay))
     }
 
-    /// By the voltages between all legs.
-    pub(super) fn of_voltage(&self, omega_m: f64) -> f64 {
-        let reach = self.line_voltage();
-        let bound = |least: f64, line: Line| {
-            let left = reach - line.emf * line.drop.signum();
-            least.min(left / line.drop.abs())
-        };
-        self.lines(omega_m).into_iter().fold(f64::INFINITY, bound)
-    }
-
     /// Greatest EMF between two legs, or with vectors of pairs twice that of a phase, over mechanical speed, V s/rad.
     fn emf_peak(&self) -> f64 {
         if !self.pairs {
@@ -189,7 +179,7 @@ impl Envelope {
     }
 
     /// What a set-point of one ampere and the EMF take between two legs over a sector.
-    fn lines(&self, omega_m: f64) -> Vec<Line> {
+    pub(super) fn lines(&self, omega_m: f64) -> Vec<Line> {
         match self.reference {
             // Two phases carry one current, at worst where their EMF is greatest.
             Reference::QuasiSquare => vec![Line {
@@ -221,15 +211,6 @@ impl Envelope {
             }
         }
         all
-    }
-
-    /// By the power that a bus current brings: torque times speed and copper losses.
-    pub(super) fn of_power(&self, omega_m: f64, bus_current: f64) -> f64 {
-        let power = self.v_bus * bus_current;
-        let torque = self.torque_constant() * omega_m;
-        let loss = self.resistance * self.squared_currents();
-        // The positive root of loss I^2 + torque I = power, without cancellation.
-        2.0 * power / (torque + (torque * torque + 4.0 * loss * power).sqrt())
     }
 
     /// Mean of the phase currents' squares, summed, per squared ampere of set-point.

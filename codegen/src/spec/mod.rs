@@ -34,6 +34,7 @@ mod rule;
 mod sampled_halls;
 pub(crate) mod schema;
 mod sensing;
+mod set_point;
 #[cfg(test)]
 mod tests;
 mod toml_syntax;
@@ -41,7 +42,6 @@ mod torque_share;
 pub mod units;
 mod value;
 mod variant;
-mod weakening;
 mod words;
 
 pub use angle::{AngleDirection, AngleSensor, RotorSource};

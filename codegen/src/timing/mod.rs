@@ -61,21 +61,55 @@ pub struct Chip {
 pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
-    /// Largest error of a counted drive by the estimate fitted to all others without intervals, as a
-    /// part of the estimate.
-    pub error: f64,
-    /// The same among usual drives: those that neither learn the places of their Hall sensors nor turn
-    /// legs off within a period. An edge that is learnt is work of few steps, and which steps limit the
-    /// voltage of pairs depends on the drive: the operations tell less of both.
-    pub error_of_usual: f64,
+    /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
+    /// estimate.
+    pub errors: Errors,
+}
+
+/// Largest error among drives of a kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Usual drives.
+    pub usual: f64,
+    /// These and drives that learn the places of their Hall sensors: an edge that is learnt is work of
+    /// few steps, of which the operations tell less.
+    pub learning: f64,
+    /// All, with those that turn legs off within a period, to which nothing is fitted: which of their
+    /// steps limit the voltage depends on the drive.
+    pub intervals: f64,
 }
 
 impl Estimate {
-    const fn of(weights: Work, error: f64, error_of_usual: f64) -> Self {
+    const fn of(weights: Work, [usual, learning, intervals]: [f64; 3]) -> Self {
         Self {
             weights,
-            error,
-            error_of_usual,
+            errors: Errors {
+                usual,
+                learning,
+                intervals,
+            },
+        }
+    }
+}
+
+/// What a drive has that its operations do not tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peculiarity {
+    /// Nothing.
+    None,
+    /// It learns the places of its Hall sensors.
+    Learning,
+    /// It turns legs off within a period.
+    Intervals,
+}
+
+impl Peculiarity {
+    /// Of a drive.
+    pub fn of(program: &Program, learns_halls: bool) -> Self {
+        match (program.has_intervals(), learns_halls) {
+            (true, _) => Self::Intervals,
+            (false, true) => Self::Learning,
+            (false, false) => Self::None,
         }
     }
 }
@@ -296,7 +330,7 @@ pub struct Asked<'a> {
 pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
     let digest = digest(asked.spec_toml);
     let work = work(program);
-    let is_usual = !asked.learns_halls && !program.has_intervals();
+    let peculiarity = Peculiarity::of(program, asked.learns_halls);
     let chips = CHIPS
         .iter()
         .filter(|chip| asked.target.is_none_or(|target| target == chip.target));
@@ -314,7 +348,7 @@ pub fn of_step(program: &Program, asked: Asked) -> Vec<StepTime> {
                 times: times.with_waits(part),
                 errors: counted
                     .is_none()
-                    .then(|| times.errors_with_waits(part, chip.errors(is_usual))),
+                    .then(|| times.errors_with_waits(part, chip.errors(peculiarity))),
             }
         })
         .collect()
@@ -344,13 +378,11 @@ impl Chip {
         counted.map(|(_, times)| *times)
     }
 
-    fn errors(&self, is_usual: bool) -> Times<f64> {
-        self.estimates.map(|estimate| {
-            if is_usual {
-                estimate.error_of_usual
-            } else {
-                estimate.error
-            }
+    fn errors(&self, peculiarity: Peculiarity) -> Times<f64> {
+        self.estimates.map(|estimate| match peculiarity {
+            Peculiarity::None => estimate.errors.usual,
+            Peculiarity::Learning => estimate.errors.learning,
+            Peculiarity::Intervals => estimate.errors.intervals,
         })
     }
 
@@ -435,7 +467,7 @@ mod tests {
         clocks_of_waits: &[24e6, 36e6, 48e6],
         compiler: "rustc",
         in_c: Times::of([2.0; FIGURES]),
-        estimates: Times::of([Estimate::of(WEIGHTS, 0.2, 0.1); FIGURES]),
+        estimates: Times::of([Estimate::of(WEIGHTS, [0.1, 0.2, 0.3]); FIGURES]),
         counted: &COUNTED,
     };
 
@@ -455,8 +487,13 @@ mod tests {
 
     #[test]
     fn an_estimate_has_the_error_of_drives_of_its_kind() {
-        let error = |is_usual| CHIP.errors(is_usual).any_cycles;
-        assert_eq!([true, false].map(error), [0.1, 0.2]);
+        let kinds = [
+            Peculiarity::None,
+            Peculiarity::Learning,
+            Peculiarity::Intervals,
+        ];
+        let error = |kind| CHIP.errors(kind).any_cycles;
+        assert_eq!(kinds.map(error), [0.1, 0.2, 0.3]);
     }
 
     #[test]

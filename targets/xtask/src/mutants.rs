@@ -65,7 +65,7 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// Options of the command.
+/// Options of the command, which takes the sources of the last commit.
 #[derive(Args)]
 pub struct Options {
     /// Mutants of generator and laboratory together; of the runtime all are taken
@@ -100,7 +100,8 @@ struct Outcome {
     unviable: usize,
 }
 
-/// Plants the mutants and tells the score with its confidence interval and the survivors.
+/// Plants the mutants and tells the score of each part, of a sample with its confidence interval, and the
+/// survivors. What does not compile is no mutant: the compiler refuses it.
 ///
 /// # Errors
 /// If cargo-mutants cannot be installed or run, tests fail without a mutant, or less than [`LEAST`] of the
@@ -116,9 +117,9 @@ pub fn score(options: &Options) -> Result<(), String> {
     let is_sampled = |part: &Part| options.only.is_some() || part.name != "runtime";
     let sampled = lists.iter().filter(|(part, _)| is_sampled(part));
     let all: usize = sampled.map(|(_, names)| names.len()).sum();
-    let mut whole = Outcome::default();
     // One list through all parts: each part, folder and file has its share.
-    let (step, mut place) = ((all / options.sample.max(1)).max(1), 0);
+    let (step, mut place) = (all.div_ceil(options.sample.max(1)).max(1), 0);
+    let mut missed = vec![];
     for (part, names) in lists {
         let mut chosen = names.clone();
         if is_sampled(part) {
@@ -128,22 +129,22 @@ pub fn score(options: &Options) -> Result<(), String> {
             });
         }
         let outcome = of_part(&tree, part, &names, chosen)?;
-        println!("== {}: {}", part.name, outcome.text());
-        whole.noticed += outcome.noticed;
-        whole.unviable += outcome.unviable;
-        whole.survivors.extend(outcome.survivors);
+        println!("== {}: {}", part.name, outcome.text(is_sampled(part)));
+        for survivor in &outcome.survivors {
+            println!("not noticed: {survivor}");
+        }
+        if outcome.share() < LEAST {
+            missed.push(part.name);
+        }
     }
-    println!("== mutation score: {}", whole.text());
-    for survivor in &whole.survivors {
-        println!("not noticed: {survivor}");
+    if missed.is_empty() {
+        return Ok(());
     }
-    if whole.share() < LEAST {
-        return Err(format!(
-            "less than {:.0} % of the mutants are noticed; write a test for a survivor, or remove what it changes",
-            100.0 * LEAST
-        ));
-    }
-    Ok(())
+    Err(format!(
+        "less than {:.0} % of the mutants of {} are noticed; write a test for a survivor, or remove what it changes",
+        100.0 * LEAST,
+        missed.join(" and ")
+    ))
 }
 
 impl Outcome {
@@ -155,17 +156,22 @@ impl Outcome {
         self.noticed as f64 / self.viable().max(1) as f64
     }
 
-    fn text(&self) -> String {
-        let [low, high] = interval(self.noticed, self.viable());
+    /// The share, of a sample with its interval.
+    fn text(&self, is_sampled: bool) -> String {
+        let (noticed, viable) = (self.noticed, self.viable());
+        let share = 100.0 * self.share();
+        let [low, high] = interval(noticed, viable).map(|bound| 100.0 * bound);
+        let within = if is_sampled {
+            format!(
+                " ({low:.1} to {high:.1} % with {:.0} % confidence)",
+                100.0 * CONFIDENCE
+            )
+        } else {
+            String::new()
+        };
+        let unviable = self.unviable;
         format!(
-            "{} of {} noticed, {:.1} % ({:.1} to {:.1} % with {:.0} % confidence); {} more do not compile",
-            self.noticed,
-            self.viable(),
-            100.0 * self.share(),
-            100.0 * low,
-            100.0 * high,
-            100.0 * CONFIDENCE,
-            self.unviable
+            "{noticed} of {viable} noticed, {share:.1} %{within}; {unviable} more do not compile"
         )
     }
 }
@@ -234,14 +240,21 @@ fn tree() -> Result<PathBuf, String> {
         ))
     };
     let commit = git(root(), &["rev-parse", "HEAD"])?;
-    if tree.join(".git").exists() {
+    println!("== mutants of commit {commit}");
+    let at_commit = || {
         git(
             &tree,
             &["checkout", "--quiet", "--force", "--detach", &commit],
         )?;
-    } else {
-        let place = tree.to_string_lossy();
+        git(&tree, &["clean", "--quiet", "--force", "-d"])
+    };
+    if !tree.join(".git").exists() || at_commit().is_err() {
+        // None, or that of a repository which was moved.
+        if tree.exists() {
+            fs::remove_dir_all(&tree).map_err(|error| format!("{}: {error}", tree.display()))?;
+        }
         git(root(), &["worktree", "prune"])?;
+        let place = tree.to_string_lossy();
         git(
             root(),
             &["worktree", "add", "--quiet", "--detach", &place, &commit],
@@ -261,12 +274,12 @@ fn list(tree: &Path, part: &Part) -> Result<Vec<String>, String> {
         .args(["mutants", "--list", "--package", part.package])
         .output()
         .map_err(|error| format!("cargo mutants: {error}"))?;
-    let names = String::from_utf8_lossy(&output.stdout);
-    let names: Vec<String> = names.lines().map(str::to_owned).collect();
-    if names.is_empty() {
-        return Err(format!("{} has no mutants", part.package));
+    if !output.status.success() {
+        let told = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("cargo mutants --list: {}", told.trim()));
     }
-    Ok(names)
+    let names = String::from_utf8_lossy(&output.stdout);
+    Ok(names.lines().map(str::to_owned).collect())
 }
 
 /// Runs the chosen mutants of a part through its tests.
@@ -334,12 +347,9 @@ fn run(
     let results = folder.join("mutants.out");
     fs::create_dir_all(&results)?;
     let chosen: BTreeSet<&String> = chosen.iter().collect();
-    let others: String = all
-        .iter()
-        .filter(|name| !chosen.contains(name))
-        .map(|name| format!("{name}\n"))
-        .collect();
-    fs::write(results.join("previously_caught.txt"), others)?;
+    let others = all.iter().filter(|name| !chosen.contains(name));
+    let others: Vec<&str> = others.map(String::as_str).collect();
+    fs::write(results.join("previously_caught.txt"), others.join("\n"))?;
     let timeout = (PATIENCE * seconds).max(LEAST_TIME).to_string();
     let mut command = cargo(tree);
     command

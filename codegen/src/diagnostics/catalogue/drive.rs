@@ -226,6 +226,8 @@ pub struct Beyond {
     pub bus: f64,
     /// The one that the rating takes, volt; none above the limit of a measured bus, or of the board.
     pub raised: Option<f64>,
+    /// Whether vectors of pairs make the voltage.
+    pub pairs: bool,
     /// Where the inductance takes more of that than EMF or resistance: the inductance, the pole pairs, and what it takes, volt.
     pub inductive: Option<(Part, u32, f64)>,
 }
@@ -260,6 +262,11 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         let raised = engineering(at_least(raised), "V");
         format!("raise `bus_voltage` to {raised}, or ")
     });
+    let modulate = if beyond.pairs {
+        "take `modulation: three_phase`, which makes more voltage, or "
+    } else {
+        ""
+    };
     let lasts = beyond.speed.map_or_else(String::new, |speed| {
         format!("; the rating lasts to {}", rpm_at_most(speed))
     });
@@ -267,7 +274,7 @@ pub fn rating_beyond_bus((at, speed): (&Location, &str), beyond: &Beyond) -> Dia
         Code::RatingBeyondBus,
         at,
         format!(
-            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}lower `rated_speed`, or {}",
+            "`rated_speed`: {speed}: there the bus of {} {drives} the torque ripples and falls{lasts}; {raise}{modulate}lower `rated_speed`, or {}",
             engineering(beyond.bus, "V"),
             beyond.doubtful(),
         ),

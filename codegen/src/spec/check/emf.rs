@@ -175,8 +175,8 @@ fn of_no_load(reader: &Reader) -> Option<Diagnostic> {
     })
 }
 
-/// All statements, the one that is taken first; constants of which none says its basis have a usual one, or
-/// another by [``agreement`.
+/// All statements, the one that is taken first. A constant that does not say its basis has the usual one;
+/// `super::agreement` chooses among the others later.
 pub(super) fn read<'a>(
     reader: &Reader<'a>,
     winding: Option<Winding>,

@@ -70,8 +70,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     // A wrong R or L is told of once.
     if !contradicts && decay != Some(relations::Decay::Absurd) {
         // Torque and EMF in one wrong basis are one mistake.
-        let reference = controller.as_ref().map(|spec| spec.common().reference);
-        let context = (reference, ast.board_bus(), decay);
+        let context = (controller.as_ref(), ast.board_bus(), decay);
         relations::check_bus(&motor_reader, &motor, &inverter, context, &mut errors);
         if decay == Some(relations::Decay::ByResistance) && !errors.has(Code::BusTooLow) {
             relations::tell_long_period(&motor_reader, &motor, &inverter, &mut errors);

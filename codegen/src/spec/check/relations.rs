@@ -6,7 +6,9 @@ use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Code, Collector, Diagnostic, at_least, engineering};
 use crate::spec::ast::Basis;
 use crate::spec::reader::Reader;
-use crate::spec::{BusSource, CurrentSensing, Envelope, MotorSpec, Reference, RotorSensing};
+use crate::spec::{
+    BusSource, ControllerSpec, CurrentSensing, Envelope, MotorSpec, Reference, RotorSensing,
+};
 use std::f64::consts::{FRAC_PI_3, TAU};
 
 /// The most over `rated_speed` that the default of `minimum_speed` becomes for a fast Hall timer.
@@ -126,7 +128,7 @@ pub(super) fn check_bus(
     reader: &Reader,
     motor: &Motor,
     inverter: &Inverter,
-    (reference, board_bus, decay): (Option<Reference>, Option<f64>, Option<Decay>),
+    (controller, board_bus, decay): (Option<&ControllerSpec>, Option<f64>, Option<Decay>),
     errors: &mut Collector,
 ) -> Option<()> {
     let (bus, speed, current) = (
@@ -136,7 +138,7 @@ pub(super) fn check_bus(
     );
     let stated = &motor.emf.first()?.given;
     let whole = motor.finish()?;
-    let envelope = envelope(&whole, inverter, reference?)?;
+    let envelope = envelope(&whole, inverter, controller?.common().reference)?;
     let set_point = current.si * whole.rated_torque_constant() / envelope.torque_constant();
     let voltages = envelope.voltages(speed.si, set_point);
     let [emf, drop, _] = voltages;
@@ -144,7 +146,11 @@ pub(super) fn check_bus(
     if emf <= most && emf + drop <= MOST_OF_BUS * most {
         return Some(());
     }
-    // With these the rating is not beyond the envelope either.
+    // With these the rating is not beyond the envelope either, which vectors of pairs make smaller.
+    let envelope = Envelope {
+        pairs: controller?.has_intervals(),
+        ..envelope
+    };
     let torque = whole
         .torque_rating()
         .max(set_point * envelope.torque_constant());

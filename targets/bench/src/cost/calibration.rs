@@ -5,7 +5,9 @@ use super::longest::chip;
 use crate::BenchError;
 use crate::firmware::workspace;
 use crate::targets::Target;
-use hexagen_codegen::timing::{self, FIGURES, Times, Work, counted, digest, weighed, work};
+use hexagen_codegen::timing::{
+    self, Errors, FIGURES, Peculiarity, Times, Work, counted, digest, weighed, work,
+};
 use hexagen_lab::counted::Figures;
 use hexagen_lab::engine::Prepared;
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
@@ -18,8 +20,7 @@ use std::process::Command;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Calibration {
     digest: u64,
-    learns_halls: bool,
-    has_intervals: bool,
+    peculiarity: Peculiarity,
     work: Times<Work>,
 }
 
@@ -46,8 +47,7 @@ pub struct Counted {
 /// One figure of a counted drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Point {
-    learns_halls: bool,
-    has_intervals: bool,
+    peculiarity: Peculiarity,
     work: Work,
     time: f64,
 }
@@ -56,8 +56,7 @@ struct Point {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fit {
     weights: Work,
-    error: f64,
-    error_of_usual: f64,
+    errors: Errors,
 }
 
 impl Calibration {
@@ -65,8 +64,7 @@ impl Calibration {
         let program = drive.generated.graph.program();
         Self {
             digest: digest(&drive.generated.interface.spec_toml),
-            learns_halls: drive.generated.interface.hall_shifts.is_some(),
-            has_intervals: program.has_intervals(),
+            peculiarity: Peculiarity::of(program, drive.generated.interface.hall_shifts.is_some()),
             work: work(program),
         }
     }
@@ -174,9 +172,16 @@ fn chip_item(of: &Counted) -> Result<String, BenchError> {
 }
 
 fn estimate(fit: Fit) -> String {
-    let weights = fit.weights.map(number).join(", ");
-    let [error, of_usual] = [fit.error, fit.error_of_usual].map(number);
-    format!("Estimate::of([{weights}], {error}, {of_usual})")
+    let Errors {
+        usual,
+        learning,
+        intervals,
+    } = fit.errors;
+    let [weights, errors] = [&fit.weights[..], &[usual, learning, intervals]].map(|numbers| {
+        let numbers: Vec<String> = numbers.iter().copied().map(number).collect();
+        numbers.join(", ")
+    });
+    format!("Estimate::of([{weights}], [{errors}])")
 }
 
 /// The times of each specification; of drives with one specification the longer.
@@ -247,15 +252,11 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     let typical = drives.iter().filter(|drive| drive.is_typical);
     let points = typical.map(|drive| {
         let Calibration {
-            learns_halls,
-            has_intervals,
-            work,
-            ..
+            peculiarity, work, ..
         } = drive.calibration;
         let figures = work.zip(drive.times.map(f64::from));
         let point = |(work, time)| Point {
-            learns_halls,
-            has_intervals,
+            peculiarity,
             work,
             time,
         };
@@ -276,27 +277,24 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
 /// Drives whose commands have intervals are not fitted: which of their steps limit the voltage depends on the
 /// drive, and the operations do not tell it.
 fn fit(points: &[Point]) -> Result<Fit, BenchError> {
-    let (of_intervals, fitted): (Vec<Point>, Vec<Point>) =
-        points.iter().partition(|point| point.has_intervals);
+    let is_fitted = |point: &&Point| point.peculiarity != Peculiarity::Intervals;
+    let fitted: Vec<Point> = points.iter().filter(is_fitted).copied().collect();
     let off =
         |weights: &Work, point: &Point| (point.time / weighed(weights, &point.work) - 1.0).abs();
-    let (mut error, mut error_of_usual) = (0.0_f64, 0.0_f64);
+    let mut errors = Errors::default();
     for (left_out, point) in fitted.iter().enumerate() {
         let mut others = fitted.clone();
         others.remove(left_out);
         let own = off(&weights(&others)?, point);
-        error = error.max(own);
-        if !point.learns_halls {
-            error_of_usual = error_of_usual.max(own);
+        errors.learning = errors.learning.max(own);
+        if point.peculiarity == Peculiarity::None {
+            errors.usual = errors.usual.max(own);
         }
     }
     let weights = weights(&fitted)?;
-    let of_intervals = of_intervals.iter().map(|point| off(&weights, point));
-    Ok(Fit {
-        weights,
-        error: of_intervals.fold(error, f64::max),
-        error_of_usual,
-    })
+    let all = points.iter().map(|point| off(&weights, point));
+    errors.intervals = all.fold(errors.learning, f64::max);
+    Ok(Fit { weights, errors })
 }
 
 /// Weights of 0 or more whose estimates have the least sum of relative errors: a linear program with
@@ -331,8 +329,7 @@ mod tests {
     fn a_law_of_operations_is_found_and_an_outlier_is_told() {
         let point = |add: f64, product: f64| [1.0, 0.0, add, product, 0.0, 0.0, 0.0];
         let exact = |work: Work| Point {
-            learns_halls: false,
-            has_intervals: false,
+            peculiarity: Peculiarity::None,
             work,
             time: 20.0 + 1.5 * work[2] + 4.0 * work[3],
         };
@@ -343,28 +340,33 @@ mod tests {
         for (weight, expected) in [(0, 20.0), (2, 1.5), (3, 4.0)] {
             assert!((found.weights[weight] - expected).abs() < 1e-6);
         }
-        assert!(found.error < 1e-6 && found.error_of_usual < 1e-6);
+        assert!(found.errors.learning < 1e-6 && found.errors.usual < 1e-6);
         // A drive that takes a quarter more changes no weight, and is the largest error of its kind.
         let usual = exact(point(35.0, 3.0));
         points.push(Point {
-            learns_halls: true,
+            peculiarity: Peculiarity::Learning,
             time: 1.25 * usual.time,
             ..usual
         });
         let found = fit(&points).expect("a fit");
         assert!((found.weights[2] - 1.5).abs() < 1e-6);
-        assert!((found.error - 0.25).abs() < 1e-6, "{}", found.error);
-        assert!(found.error_of_usual < 1e-6, "{found:?}");
+        assert!(
+            (found.errors.learning - 0.25).abs() < 1e-6,
+            "{}",
+            found.errors.learning
+        );
+        assert!(found.errors.usual < 1e-6, "{found:?}");
         // One with intervals is not fitted, and the largest error of all.
         points.push(Point {
-            has_intervals: true,
+            peculiarity: Peculiarity::Intervals,
             time: 2.0 * usual.time,
             ..usual
         });
         let with_intervals = fit(&points).expect("a fit");
         assert_eq!(with_intervals.weights, found.weights);
-        assert!((with_intervals.error - 1.0).abs() < 1e-6);
-        assert!(with_intervals.error_of_usual < 1e-6);
+        assert!((with_intervals.errors.intervals - 1.0).abs() < 1e-6);
+        assert!((with_intervals.errors.learning - 0.25).abs() < 1e-6);
+        assert!(with_intervals.errors.usual < 1e-6);
     }
 
     #[test]

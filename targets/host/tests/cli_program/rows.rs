@@ -21,11 +21,7 @@ const ESTIMATED: &str = "PDCC three_phase, torque_priority, advance 2, estimated
 /// limits in percent of rated speed lie in these bounds: the first loses its torque early, the others hold it further
 /// than the document says.
 const OTHER_READINGS: [(&str, f64, f64); 4] = [
-    (
-        "FCS-MPC table2, nominal (literal), estimated EMF",
-        0.0,
-        60.0,
-    ),
+    ("FCS-MPC table2, nominal, estimated EMF", 0.0, 60.0),
     (
         "PI-PWM three_phase, 800 Hz, Ti 0.5 ms, no feed-forward",
         53.0,

@@ -187,7 +187,7 @@ impl Both {
         Claim {
             letter: 'b',
             text: format!(
-                "{:.0} rpm: FCS-MPC misses {} Nm and has the most 6th and 12th torque harmonic; then PI-PWM; PDCC least",
+                "{:.0} rpm: FCS-MPC misses {} Nm and has the most 6th and 12th torque harmonic; then PI-PWM; PDCC least (of these three)",
                 self.rpm(LOW),
                 short(self.torque())
             ),

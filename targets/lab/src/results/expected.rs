@@ -225,7 +225,7 @@ pub fn rows_of(inverter: &InverterSpec) -> Vec<DesignRow> {
 pub fn design_table() -> Vec<DesignRow> {
     vec![
         DesignRow {
-            label: "FCS-MPC table2, nominal (literal), estimated EMF",
+            label: "FCS-MPC table2, nominal, estimated EMF",
             variant: "fcs-mpc:discretisation=euler,candidates=table2,off_leg=nominal,emf=estimated,emf_filter=1,hall_capture=timer",
             timer: Expected {
                 points: two([point(2.93, 60.0, 13.0), point(2.76, 106.0, 22.0)]),

@@ -39,6 +39,9 @@ static void answer_command(const hexagen_intervals *intervals)
     answer(2, intervals->end[0]);
     answer(2, intervals->end[1]);
     for (int interval = 0; interval < 3; interval++) {
+        if (intervals->states[interval] > 63U) {
+            exit(3);
+        }
         answer(1, intervals->states[interval]);
     }
     answer(1, 0U);

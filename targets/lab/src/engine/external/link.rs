@@ -86,7 +86,7 @@ impl Link {
         })
     }
 
-    /// Bytes of a step's answer: words of the command, fault, staleness of the bus voltage, state
+    /// Bytes of a step's answer: the command's 64 bits, fault, staleness of the bus voltage, state
     /// words.
     fn answer_length(&self) -> usize {
         8 + 1 + 1 + 4 * self.state_words

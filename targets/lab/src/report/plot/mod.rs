@@ -126,7 +126,7 @@ impl Axis {
         }
     }
 
-    /// An axis whose ticks are stated.
+    /// An axis whose ticks are stated, and have their own names.
     pub fn ticked(title: impl Into<String>, range: (f64, f64), ticks: Vec<(f64, String)>) -> Self {
         Self {
             title: title.into(),

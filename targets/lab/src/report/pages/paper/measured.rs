@@ -73,7 +73,7 @@ fn field(color: Color) -> Sign {
 
 /// Figure 4: a real trajectory at low and at high speed against the ideal one.
 pub fn figure_4(data: &Reproduction) -> Vec<Block> {
-    let [low, high] = &data.methods[Method::PiPwm.index()].literal.points;
+    let [low, high] = &data.methods[Method::PiPwm.index()].corrected.points;
     let paths = [low, high].map(|point| means(&point.trace));
     let colors = [variant(2), variant(3)];
     let most = paths.iter().flatten();
@@ -94,7 +94,7 @@ pub fn figure_4(data: &Reproduction) -> Vec<Block> {
     });
     let [low, high] = [low, high].map(|point| number(point.rpm, 0));
     let note = "The figure shows commutation with little voltage reserve, here of the drive nearest to a conventional one, \
-                PI-PWM in the literal reading. At high speed the incoming current rises too slowly, and the trajectory falls inside \
+                PI-PWM in the corrected reading. At high speed the incoming current rises too slowly, and the trajectory falls inside \
                 the hexagon.";
     let caption = "Trajectory of the current, means over one control period";
     vec![

@@ -98,8 +98,9 @@ pub fn readings(data: &Reproduction) -> Vec<Block> {
     }
     let how = format!(
         "Every drive is generated fixed-point code, fed by the simulated motor through {}-bit ADCs and a Hall timer. The literal reading \
-         uses the paper's equations and tables as printed; the corrected one applies the errata in the documentation \
-         of the crate hexagen (hexagen::errata).",
+         uses the paper's equations and tables as printed, as far as a drive can; the corrected one applies the errata in the documentation \
+         of the crate hexagen (hexagen::errata). The paper does not say what a modulator does beyond its limit: the literal reading scales \
+         the voltage, the corrected one takes the nearest.",
         data.inverter.adc_bits
     );
     vec![Block::Prose(how), Block::Table(table)]
@@ -165,7 +166,7 @@ fn about(method: Method, reading: Reading) -> &'static str {
             "Predicts with the applied vector, the off leg clamped by its diode or floating (erratum of (15)); EMF from the motor's shape, as (5)."
         }
         (Method::Pdcc, Reading::Literal) => {
-            "The paper's modulator, (14) to (16); the voltage is scaled to what it reaches; the EMF of the last period is taken as unchanged."
+            "The paper's modulator, (14), (15) and the corrected (16), without which times turn negative; the voltage is scaled to what it reaches; the EMF of the last period is taken as unchanged."
         }
         (Method::Pdcc, Reading::Corrected) => {
             "Three legs are pulsed, since vectors of two pairs do not give the mean that (15) computes; at its limit the nearest voltage; EMF from the motor's shape, as (5)."

@@ -1,6 +1,7 @@
-//! Field weakening in the envelope: the greatest set-point over the angles by which the reference turns.
+//! Greatest set-point of an envelope: by the voltage, by the bus current, and with field weakening over the angles by
+//! which the reference turns.
 
-use super::envelope::{ANGLES as SECTOR, Envelope};
+use super::envelope::{ANGLES as SECTOR, Envelope, Line};
 use super::torque_share::MOST_TURN;
 use std::f64::consts::TAU;
 
@@ -27,6 +28,25 @@ impl Envelope {
             turned_set_point(self, share, omega_m).min(of_backward)
         });
         current.max(turned).max(0.0)
+    }
+
+    /// By the voltages between all legs.
+    fn of_voltage(&self, omega_m: f64) -> f64 {
+        let reach = self.line_voltage();
+        let bound = |least: f64, line: Line| {
+            let left = reach - line.emf * line.drop.signum();
+            least.min(left / line.drop.abs())
+        };
+        self.lines(omega_m).into_iter().fold(f64::INFINITY, bound)
+    }
+
+    /// By the power that a bus current brings: torque times speed and copper losses.
+    fn of_power(&self, omega_m: f64, bus_current: f64) -> f64 {
+        let power = self.v_bus * bus_current;
+        let torque = self.torque_constant() * omega_m;
+        let loss = self.resistance * self.squared_currents();
+        // The positive root of loss I^2 + torque I = power, without cancellation.
+        2.0 * power / (torque + (torque * torque + 4.0 * loss * power).sqrt())
     }
 }
 
@@ -64,7 +84,8 @@ fn turned_set_point(drive: &Envelope, share: [f64; 2], omega_m: f64) -> f64 {
         let angle = ahead as f64 / f64::from(degrees);
         let share = 1.0 - angle * angle * (square - fourth * angle * angle);
         let top = share * drive.max_current;
-        let (mut least, mut greatest) = (f64::NEG_INFINITY, top.min(of_power(drive, omega_m)));
+        let (mut least, mut greatest) =
+            (f64::NEG_INFINITY, top.min(turned_of_power(drive, omega_m)));
         for (at, emf) in sector.iter().enumerate() {
             let turned = drops[(at + ahead) % drops.len()];
             for line in 0..3 {
@@ -87,7 +108,7 @@ fn phase_pairs(of: impl Fn(usize) -> f64) -> [f64; 3] {
 }
 
 /// Set-point that a bus current allows beside the losses of the greatest current, ampere.
-fn of_power(drive: &Envelope, omega_m: f64) -> f64 {
+fn turned_of_power(drive: &Envelope, omega_m: f64) -> f64 {
     drive.bus_current.map_or(f64::INFINITY, |bus| {
         let most = drive.max_current;
         let loss = drive.resistance * drive.squared_currents() * most * most;
