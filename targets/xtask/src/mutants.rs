@@ -133,7 +133,7 @@ pub fn score(options: &Options) -> Result<(), String> {
         for survivor in &outcome.survivors {
             println!("not noticed: {survivor}");
         }
-        if outcome.share() < LEAST {
+        if outcome.viable() > 0 && outcome.share() < LEAST {
             missed.push(part.name);
         }
     }

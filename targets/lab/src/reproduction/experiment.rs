@@ -54,6 +54,8 @@ pub struct Figures {
     pub cycles: u32,
     /// Cycles of a usual step; `None` for a drive that trips.
     pub usual_cycles: Option<u32>,
+    /// Whether it tripped at one of the speeds.
+    pub has_tripped: bool,
 }
 
 /// The figures of one reading.
@@ -112,6 +114,7 @@ fn figures(run: &Run) -> Figures {
         speeds: [low, high],
         cycles: run.cost.worst_cycles(),
         usual_cycles: run.usual_cycles(),
+        has_tripped: run.points.iter().any(|point| point.trip.is_some()),
     }
 }
 
@@ -144,15 +147,23 @@ impl Experiment {
     pub fn limits(&self) -> String {
         let texts = Method::ALL.map(|method| match self.limit(method) {
             Some(limit) if limit <= 0.0 => "never".to_owned(),
-            limit => number(limit, 0),
+            limit => self.text(method, limit, 0),
         });
         texts.join(" / ")
     }
 
-    /// A figure of all methods, in the paper's order: "1.2 / 0.4 / - / 3".
+    /// A figure of all methods, in the paper's order: "1.2 / 0.4 / tripped / 3".
     pub fn row(&self, figure: impl Fn(Method) -> Option<f64>, decimals: usize) -> String {
-        let texts = Method::ALL.map(|method| number(figure(method), decimals));
+        let texts = Method::ALL.map(|method| self.text(method, figure(method), decimals));
         texts.join(" / ")
+    }
+
+    /// A method's figure; "tripped", or a dash if it has lost its current without a trip.
+    fn text(&self, method: Method, figure: Option<f64>, decimals: usize) -> String {
+        if figure.is_none() && self.drive(method).has_tripped {
+            return "tripped".to_owned();
+        }
+        number(figure, decimals)
     }
 
     /// Whether the mean torque falls short of the demand.

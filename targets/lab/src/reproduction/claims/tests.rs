@@ -29,6 +29,7 @@ fn drive(limit_pct: f64, cycles: u32, low: AtSpeed, high: AtSpeed) -> Figures {
         speeds: [low, high],
         cycles,
         usual_cycles: Some(cycles / 2),
+        has_tripped: false,
     }
 }
 
@@ -158,6 +159,16 @@ fn with_lost_currents_only_computation_times_are_judged() {
     for (letter, verdict) in verdicts(&[without_current(), claimed()]) {
         assert_eq!(verdict, Verdict::Holds, "{letter}");
     }
+}
+
+#[test]
+fn a_tripped_drive_is_told_as_such() {
+    let mut readings = [without_current(), without_current()];
+    readings[0].methods[Phcc.index()].has_tripped = true;
+    let claims = claims(readings);
+    let [tripped, lost] = &claims[0].figures;
+    assert_eq!(tripped, "\u{2013} / \u{2013} / tripped / \u{2013} %");
+    assert_eq!(lost, "\u{2013} / \u{2013} / \u{2013} / \u{2013} %");
 }
 
 #[test]

@@ -43,8 +43,8 @@ pub fn claims(data: &Reproduction) -> Vec<Block> {
             table.row(cells.map(|text| Cell::from(text).toned(Tone::Muted)));
         }
     }
-    let note = "Figures are those of FCS-MPC / PDCC / PHCC / PI-PWM, in this order; a dash is a drive that has lost its current, \
-                on which no statement is judged. A claim holds if each of its statements is true under every reading that can be judged, \
+    let note = "Figures are those of FCS-MPC / PDCC / PHCC / PI-PWM, in this order; a dash is a drive that has lost its current without a trip. No statement is judged on \
+                such a drive, or on one that tripped. A claim holds if each of its statements is true under every reading that can be judged, \
                 does not hold if none is true, and else holds in part. Verdicts and reasons are computed from the figures.";
     vec![Block::Note(note.to_owned()), Block::Table(table)]
 }
