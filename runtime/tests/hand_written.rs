@@ -222,3 +222,37 @@ fn an_angle_is_not_taken_for_a_hall_code() {
     assert_eq!(drive.step(&turned), Intervals::OFF);
     assert_eq!(drive.status().fault, Some(Fault::Hall));
 }
+
+/// Each call, on a drive and on its loop behind the trait.
+#[test]
+fn calls_change_the_mode_of_a_drive_and_of_any_loop() {
+    type Calls = (
+        fn(&mut Drive<SixStep>),
+        fn(&mut dyn DynLoop<Intervals>),
+        Mode,
+    );
+    let calls: [Calls; 4] = [
+        (Drive::calibrate, |any| any.calibrate(), Mode::Calibrate),
+        (Drive::precharge, |any| any.precharge(), Mode::Precharge),
+        (Drive::coast, |any| any.coast(), Mode::Coast),
+        (Drive::brake, |any| any.brake(), Mode::Brake),
+    ];
+    for (of_drive, of_loop, mode) in calls {
+        let (mut drive, mut other) = (Drive::<SixStep>::new(), Drive::<SixStep>::new());
+        let any: &mut dyn DynLoop<Intervals> = &mut other.control();
+        let modes = |drive: &mut Drive<SixStep>, any: &mut dyn DynLoop<Intervals>| {
+            drive.step(&sample(HALL));
+            any.step(&sample(HALL));
+            [drive.status().mode, any.status().mode]
+        };
+        assert_eq!(modes(&mut drive, any), [Mode::Run; 2]);
+        of_drive(&mut drive);
+        of_loop(any);
+        assert_eq!(modes(&mut drive, any), [mode; 2]);
+        if matches!(mode, Mode::Coast | Mode::Brake) {
+            drive.resume();
+            any.resume();
+            assert_eq!(modes(&mut drive, any), [Mode::Run; 2]);
+        }
+    }
+}
