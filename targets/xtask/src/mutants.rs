@@ -61,7 +61,11 @@ const PARTS: [Part; 3] = [
     Part {
         name: "runtime",
         package: "hexagen",
-        tests: &[(&["hexagen"], &[]), (&["hexagen-tests"], &[])],
+        tests: &[
+            (&["hexagen"], &[]),
+            (&["hexagen-tests"], &[]),
+            (&["hexagen-lab"], &[]),
+        ],
     },
 ];
 
