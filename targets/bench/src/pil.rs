@@ -133,7 +133,12 @@ fn difference(
     };
     let found = core.run(task, &vectors.records)?;
     let expected = record(drive, vectors.steps, Some(block))?.full;
-    let report = first_step(&expected, &found, &listed.words);
+    let halves = if drive.spec.controller.has_intervals() {
+        ["end_1", "end_2", "states_1_2", "states_3"]
+    } else {
+        PULSES
+    };
+    let report = first_step(&expected, &found, halves, &listed.words);
     Ok(Some(report.unwrap_or_else(|| {
         format!("block {block} differs in its digest only")
     })))
@@ -174,8 +179,17 @@ fn first_block(vectors: &Vectors, found: &[u8]) -> Option<usize> {
         .position(|digest| found.next() != Some(digest))
 }
 
-/// The first step that differs, with all its words: outputs, and state words by name.
-pub fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option<String> {
+/// The halfwords of a command of pulses; the states of all legs are one of them.
+pub const PULSES: [&str; 4] = ["compare_a", "compare_b", "compare_c", "states"];
+
+/// The first step that differs, with all its words by name: the command's halfwords, the fault, and the
+/// state words.
+pub fn first_step(
+    expected: &[Answer],
+    found: &[u8],
+    halves: [&str; 4],
+    names: &[String],
+) -> Option<String> {
     let length = ANSWER + 4 * names.len();
     let mut found = found.chunks(length);
     let (answer, found) = expected
@@ -195,11 +209,8 @@ pub fn first_step(expected: &[Answer], found: &[u8], names: &[String]) -> Option
         );
     };
     let sides = [answer.bytes.as_slice(), found];
-    // Of pulses the halves are the compare values of a, b, c and the states of the legs; of intervals their
-    // ends, and states.
-    for half in 0..4 {
-        let name = format!("command_{half}");
-        line(&name, sides.map(|bytes| number::<2>(bytes, 2 * half)));
+    for (half, name) in halves.into_iter().enumerate() {
+        line(name, sides.map(|bytes| number::<2>(bytes, 2 * half)));
     }
     line("fault", sides.map(|bytes| number::<1>(bytes, 8)));
     for (index, name) in names.iter().enumerate() {
@@ -384,6 +395,6 @@ pub mod tests {
             .filter(|line| line.starts_with('*'))
             .collect();
         assert_eq!(marked.len(), 1, "{report}");
-        assert!(marked[0].starts_with("* command_2"), "{report}");
+        assert!(marked[0].starts_with("* compare_c"), "{report}");
     }
 }
