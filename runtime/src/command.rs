@@ -103,7 +103,7 @@ impl Legs {
         (self.0 >> 48) as u16
     }
 
-    /// The word: compare values in 16 bits each from the lowest on, then [`states`](Self::states).
+    /// The word: from the lowest bit on, the three compare values in 16 bits each, then [`states`](Self::states).
     #[inline]
     #[must_use]
     pub const fn to_bits(self) -> u64 {
@@ -249,7 +249,8 @@ impl Intervals {
         ]
     }
 
-    /// The word: ends in 16 bits each from the lowest on, then [`states`](Self::states) in 8 bits each.
+    /// The word: from the lowest bit on, the two ends in 16 bits each, then the three [`states`](Self::states) in 8
+    /// bits each.
     #[inline]
     #[must_use]
     pub const fn to_bits(self) -> u64 {

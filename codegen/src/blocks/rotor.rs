@@ -424,7 +424,7 @@ impl<'b> RotorWords<'b> {
         ]);
         let placed = learnt.map(|(learnt, last)| learnt.keep(l, last));
         let rise = rise.map(|(seen, old)| l.b.join([("rise_now", seen, old)])[0]);
-        let edges = self.keep(Edges {
+        let edges_now = Edges {
             direction,
             counted,
             rev,
@@ -433,21 +433,21 @@ impl<'b> RotorWords<'b> {
             step_angle,
             age,
             placed,
-        });
+        };
+        self.keep(&edges_now);
         self.keep_intervals(l, seen, intervals);
         self.keep_count(l, over);
-        edges
+        edges_now
     }
 
-    /// Sets the state words of an edge.
-    fn keep(&self, edges: Edges<'b>) -> Edges<'b> {
+    /// Sets the words of direction, age, turn and rise.
+    fn keep(&self, edges: &Edges<'b>) {
         if let Some((word, rise)) = self.rise.zip(edges.rise) {
             word.set(rise);
         }
         self.direction.set(edges.direction);
         self.age_prev.set(edges.age);
         self.rev.set(edges.rev);
-        edges
     }
 
     /// Joins the intervals of the open guarded stage and sets their state words.

@@ -8,6 +8,7 @@ use crate::targets::Target;
 use crate::vectors::{Answer, Vectors, drive_of, record};
 use hexagen_firmware::wire::{ANSWER, Mode, RECORD, STEP_RECORD, Task};
 use hexagen_lab::engine::Prepared;
+use hexagen_reference::AnyCommand;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -133,12 +134,8 @@ fn difference(
     };
     let found = core.run(task, &vectors.records)?;
     let expected = record(drive, vectors.steps, Some(block))?.full;
-    let halves = if drive.spec.controller.has_intervals() {
-        ["end_1", "end_2", "states_1_2", "states_3"]
-    } else {
-        PULSES
-    };
-    let report = first_step(&expected, &found, halves, &listed.words);
+    let has_intervals = drive.spec.controller.has_intervals();
+    let report = first_step(&expected, &found, has_intervals, &listed.words);
     Ok(Some(report.unwrap_or_else(|| {
         format!("block {block} differs in its digest only")
     })))
@@ -179,15 +176,12 @@ fn first_block(vectors: &Vectors, found: &[u8]) -> Option<usize> {
         .position(|digest| found.next() != Some(digest))
 }
 
-/// The halfwords of a command of pulses; the states of all legs are one of them.
-pub const PULSES: [&str; 4] = ["compare_a", "compare_b", "compare_c", "states"];
-
-/// The first step that differs, with all its words by name: the command's halfwords, the fault, and the
+/// The first step that differs, with all its words by name: those of the command, the fault, and the
 /// state words.
 pub fn first_step(
     expected: &[Answer],
     found: &[u8],
-    halves: [&str; 4],
+    has_intervals: bool,
     names: &[String],
 ) -> Option<String> {
     let length = ANSWER + 4 * names.len();
@@ -209,8 +203,17 @@ pub fn first_step(
         );
     };
     let sides = [answer.bytes.as_slice(), found];
-    for (half, name) in halves.into_iter().enumerate() {
-        line(name, sides.map(|bytes| number::<2>(bytes, 2 * half)));
+    let command = |bytes: &[u8]| {
+        let bits = u64::from_le_bytes(*bytes.first_chunk()?);
+        Some(AnyCommand::from_bits(bits, has_intervals).named_words())
+    };
+    let [expected, found] = sides.map(command);
+    for (place, (name, expected)) in expected.into_iter().flatten().enumerate() {
+        let found = found.as_ref().map(|words| words[place].1);
+        line(
+            name,
+            [Some(expected), found].map(|word| word.map(i32::from)),
+        );
     }
     line("fault", sides.map(|bytes| number::<1>(bytes, 8)));
     for (index, name) in names.iter().enumerate() {

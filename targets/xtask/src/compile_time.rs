@@ -8,6 +8,7 @@
 
 mod first;
 
+use crate::step::cargo;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -235,12 +236,10 @@ impl Folder {
     }
 
     fn cargo_into(&self, builds: &Path, arguments: &[&str]) -> Result<(), String> {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let status = Command::new(cargo)
+        let status = cargo(&self.0)
             .args(arguments)
             .args(["--quiet", "--jobs", "2", "--target-dir"])
             .arg(builds)
-            .current_dir(&self.0)
             .status()
             .map_err(|error| format!("cannot run cargo: {error}"))?;
         if status.success() {

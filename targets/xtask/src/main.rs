@@ -60,7 +60,7 @@ enum Command {
     /// comparison with the bit-true model
     Faults,
     /// Mutation score: share of small changes of the sources that the tests notice, apart from text
-    /// snapshots: a sample of generator and laboratory, and all of the runtime
+    /// snapshots, in the last commit: a sample of generator and laboratory, and all of the runtime
     Mutants(mutants::Options),
     /// Time that 100 controllers add to `cargo check`, and the share of each part of the generator
     CompileTime,

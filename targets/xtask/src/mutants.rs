@@ -4,14 +4,14 @@
 //! mutants it takes, which tests each meets, and the score. Snapshots always pass: a mutant must be noticed
 //! by something else.
 
-use crate::step::root;
+use crate::step::{cargo, root};
 use clap::Args;
 use statrs::distribution::{Beta, ContinuousCDF};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
-use std::{env, fs, io};
+use std::{fs, io};
 
 /// Version of cargo-mutants.
 const VERSION: &str = "27.1.0";
@@ -32,6 +32,8 @@ const LEAST_TIME: u64 = 60;
 struct Part {
     name: &'static str,
     package: &'static str,
+    /// Whether all its mutants are taken, not a sample.
+    is_whole: bool,
     /// A mutant meets the next tests if it passes those before.
     tests: &'static [Tests],
 }
@@ -44,6 +46,7 @@ const PARTS: [Part; 3] = [
     Part {
         name: "generator",
         package: "hexagen-codegen",
+        is_whole: false,
         tests: &[
             (&["hexagen-codegen"], &["--lib"]),
             (&["hexagen-tests"], &[]),
@@ -53,6 +56,7 @@ const PARTS: [Part; 3] = [
     Part {
         name: "laboratory",
         package: "hexagen-lab",
+        is_whole: false,
         tests: &[
             (&["hexagen-lab"], &["--lib"]),
             (&["hexagen-lab", "hexagen-host"], &[]),
@@ -61,6 +65,7 @@ const PARTS: [Part; 3] = [
     Part {
         name: "runtime",
         package: "hexagen",
+        is_whole: true,
         tests: &[
             (&["hexagen"], &[]),
             (&["hexagen-tests"], &[]),
@@ -69,7 +74,7 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// Options of the command, which takes the sources of the last commit.
+/// Options of `cargo xtask mutants`.
 #[derive(Args)]
 pub struct Options {
     /// Mutants of generator and laboratory together; of the runtime all are taken
@@ -118,7 +123,7 @@ pub fn score(options: &Options) -> Result<(), String> {
     for part in PARTS.iter().filter(is_asked) {
         lists.push((part, list(&tree, part)?));
     }
-    let is_sampled = |part: &Part| options.only.is_some() || part.name != "runtime";
+    let is_sampled = |part: &Part| options.only.is_some() || !part.is_whole;
     let sampled = lists.iter().filter(|(part, _)| is_sampled(part));
     let all: usize = sampled.map(|(_, names)| names.len()).sum();
     // One list through all parts: each part, folder and file has its share.
@@ -180,7 +185,7 @@ impl Outcome {
     }
 }
 
-/// Interval of Clopper and Pearson of a share, of which `hits` of `tries` were seen.
+/// Confidence interval (Clopper and Pearson) of a share that was seen in `hits` of `tries`.
 fn interval(hits: usize, tries: usize) -> [f64; 2] {
     let (hits, tries) = (hits as f64, tries as f64);
     let tail = (1.0 - CONFIDENCE) / 2.0;
@@ -215,10 +220,10 @@ fn install() -> Result<(), String> {
     ))
 }
 
-fn cargo(tree: &Path) -> Command {
-    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+/// Cargo in the tree, for which snapshots always pass.
+fn cargo_in(tree: &Path) -> Command {
+    let mut command = cargo(tree);
     command
-        .current_dir(tree)
         .env("INSTA_FORCE_PASS", "1")
         .env("INSTA_UPDATE", "no")
         .env("CARGO_INCREMENTAL", "1");
@@ -274,7 +279,7 @@ fn folder() -> PathBuf {
 
 /// Names of all mutants of a part, in the order of its files.
 fn list(tree: &Path, part: &Part) -> Result<Vec<String>, String> {
-    let output = cargo(tree)
+    let output = cargo_in(tree)
         .args(["mutants", "--list", "--package", part.package])
         .output()
         .map_err(|error| format!("cargo mutants: {error}"))?;
@@ -320,7 +325,7 @@ fn of_part(
 /// Time of tests without a mutant.
 fn seconds(tree: &Path, (packages, arguments): &Tests) -> io::Result<u64> {
     let run = |more: &[&str]| {
-        let mut command = cargo(tree);
+        let mut command = cargo_in(tree);
         let packages = packages.iter().flat_map(|package| ["--package", package]);
         command.args(["test", "--quiet"]).args(packages);
         let status = command.args(*arguments).args(more).status()?;
@@ -355,7 +360,7 @@ fn run(
     let others: Vec<&str> = others.map(String::as_str).collect();
     fs::write(results.join("previously_caught.txt"), others.join("\n"))?;
     let timeout = (PATIENCE * seconds).max(LEAST_TIME).to_string();
-    let mut command = cargo(tree);
+    let mut command = cargo_in(tree);
     command
         .args(["mutants", "--in-place", "--iterate", "--baseline", "skip"])
         .args(["--timeout", &timeout, "--package", part.package, "--output"])

@@ -1,8 +1,7 @@
 //! Published packages: every crate of the workspace without `publish = false`.
 
-use crate::step::{Step, root, step};
+use crate::step::{Step, cargo, root, step};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::{env, fs};
 
 /// Files at the top of every package.
@@ -100,10 +99,8 @@ pub fn check_contents() -> Result<(), String> {
 
 /// The paths of all files of a package, one per line.
 fn packed_files(package: &str) -> Result<String, String> {
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(cargo)
+    let output = cargo(root())
         .args(["package", "--list", "--allow-dirty", "--package", package])
-        .current_dir(root())
         .output()
         .map_err(|error| format!("cannot run cargo: {error}"))?;
     if !output.status.success() {

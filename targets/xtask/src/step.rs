@@ -1,6 +1,8 @@
 //! One step of a task.
 
+use std::env;
 use std::path::Path;
+use std::process::Command;
 
 /// One cargo command.
 pub struct Step {
@@ -26,6 +28,13 @@ pub fn step(name: &'static str, arguments: &[&str]) -> Step {
         needs: None,
         check: None,
     }
+}
+
+/// The cargo that runs this, in a folder.
+pub fn cargo(folder: &Path) -> Command {
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(folder);
+    cargo
 }
 
 /// The repository.

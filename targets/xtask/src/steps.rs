@@ -1,6 +1,6 @@
 //! The steps of each task: cargo commands with their prerequisites.
 
-use crate::step::{Step, root, step};
+use crate::step::{Step, cargo, root, step};
 use crate::{editors, install, packages, readme};
 use std::env;
 use std::process::Command;
@@ -323,13 +323,9 @@ pub fn refresh() -> Vec<Step> {
 /// # Errors
 /// The name of the failing step, or what is missing and how to get it.
 pub fn run(steps: &[Step]) -> Result<(), String> {
-    let root = root();
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     for step in steps {
         if let Some((subcommand, remedy)) = step.needs {
-            let known = Command::new(&cargo)
-                .args([subcommand, "--version"])
-                .output();
+            let known = cargo(root()).args([subcommand, "--version"]).output();
             if !known.is_ok_and(|output| output.status.success()) {
                 return Err(format!(
                     "`cargo {subcommand}` is missing; install it: {remedy}"
@@ -338,11 +334,10 @@ pub fn run(steps: &[Step]) -> Result<(), String> {
         }
         println!("== {}: cargo {}", step.name, step.arguments.join(" "));
         let begin = Instant::now();
-        let mut command = Command::new(&cargo);
+        let mut command = cargo(root());
         command
             .args(&step.arguments)
-            .envs(step.environment.iter().copied())
-            .current_dir(root);
+            .envs(step.environment.iter().copied());
         if env::var_os("CI").is_some() {
             // Without incremental data, builds are faster and use a third less of the disk.
             command.env("CARGO_INCREMENTAL", "0");

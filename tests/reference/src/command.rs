@@ -43,6 +43,28 @@ impl AnyCommand {
         }
     }
 
+    /// Its words by name, to show where two commands differ.
+    pub fn named_words(self) -> Vec<(&'static str, u16)> {
+        match self {
+            Self::Legs(legs) => {
+                let [a, b, c] = legs.compare();
+                let states = legs.states();
+                vec![
+                    ("compare_a", a),
+                    ("compare_b", b),
+                    ("compare_c", c),
+                    ("states", states),
+                ]
+            }
+            Self::Intervals(intervals) => {
+                let ([first, second], [one, two, three]) = (intervals.ends(), intervals.states());
+                let ends = [("end_1", first), ("end_2", second)];
+                let states = [("states_1", one), ("states_2", two), ("states_3", three)];
+                ends.into_iter().chain(states).collect()
+            }
+        }
+    }
+
     /// States of legs a, b, c, in the first interval.
     #[inline]
     pub fn state(self) -> [LegState; 3] {

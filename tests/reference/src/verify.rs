@@ -207,21 +207,9 @@ impl<S: Subject> Pair<S> {
                 expected,
             });
         };
-        let names = match expected {
-            AnyCommand::Legs(_) => ["compare_a", "compare_b", "compare_c", "states", "", ""],
-            AnyCommand::Intervals(_) => ["end_1", "end_2", "", "states_1", "states_2", "states_3"],
-        };
-        let [found_words, expected_words] = [found, expected].map(|command| {
-            let ([a, b, c], [one, two, three]) = (command.instants(), command.states());
-            [a, b, c, one, two, three]
-        });
-        for (word, name) in names
-            .into_iter()
-            .enumerate()
-            .filter(|(_, name)| !name.is_empty())
-        {
-            let [found, expected] = [found_words, expected_words].map(|words| words[word].into());
-            note(name, None, found, expected);
+        let words = found.named_words().into_iter().zip(expected.named_words());
+        for ((name, found), (_, expected)) in words {
+            note(name, None, found.into(), expected.into());
         }
         note(
             "fault()",

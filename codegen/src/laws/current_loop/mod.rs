@@ -215,12 +215,13 @@ impl<'b> CurrentLoop<'_, 'b> {
         let doc = "Mean of three legs.";
         let third = l.coefficient("k_third", 1.0 / 3.0, options.word, doc, "1/3");
         let bus = set_point.read_bus(l);
-        let weakened = words
-            .weakening
-            .zip(shape)
-            .map(|(weakening, shape)| weakening.reference(l, &shape, j, along));
-        let (reference, weakened) =
-            weakened.map_or((along, None), |(turned, weakened)| (turned, Some(weakened)));
+        let (reference, weakened) = match words.weakening.zip(shape) {
+            Some((weakening, shape)) => {
+                let (reference, weakened) = weakening.reference(l, &shape, j, along);
+                (reference, Some(weakened))
+            }
+            None => (along, None),
+        };
         let outgoing = commutation.map(|commutation| commutation.outgoing);
         let rotor = tracked.rotor.as_ref();
         let turning = (rotor.map(|rotor| (rotor, shape)), j, bus.volts);

@@ -78,7 +78,7 @@ pub struct Words<'b> {
     pub off_prev: Option<Memory<'b>>,
     /// EMF expected for the last period; of an estimate.
     pub e_prev: Option<[Memory<'b>; 2]>,
-    /// Of an observer.
+    /// The EMF observer.
     pub observer: Option<ObserverWords<'b>>,
     /// Field weakening.
     pub weakening: Option<FieldWeakening<'b>>,

@@ -3,7 +3,7 @@
 use super::count::Inputs;
 use crate::BenchError;
 use crate::listing::Listed;
-use crate::pil::{Core, PULSES, first_step};
+use crate::pil::{Core, first_step};
 use crate::vectors::Answer;
 use hexagen::fixed::types::I16F16;
 use hexagen_firmware::peers::{FcsMpc, FocLoop, IdspLoop, Pdcc, Peer, Phcc, PiPwm};
@@ -82,7 +82,7 @@ impl Run {
             block: 0,
         };
         let found = core.run(task, self.inputs.records())?;
-        match first_step(&self.answers, &found, PULSES, &[]) {
+        match first_step(&self.answers, &found, false, &[]) {
             None => Ok(()),
             Some(report) => Err(BenchError::Failed(format!(
                 "{} differs from the host\n{report}",

@@ -54,8 +54,6 @@ pub struct Figures {
     pub cycles: u32,
     /// Cycles of a usual step; `None` for a drive that trips.
     pub usual_cycles: Option<u32>,
-    /// Whether it tripped at one of the speeds.
-    pub has_tripped: bool,
 }
 
 /// The figures of one reading.
@@ -114,7 +112,6 @@ fn figures(run: &Run) -> Figures {
         speeds: [low, high],
         cycles: run.cost.worst_cycles(),
         usual_cycles: run.usual_cycles(),
-        has_tripped: run.points.iter().any(|point| point.trip.is_some()),
     }
 }
 
@@ -160,7 +157,8 @@ impl Experiment {
 
     /// A method's figure; "tripped", or a dash if it has lost its current without a trip.
     fn text(&self, method: Method, figure: Option<f64>, decimals: usize) -> String {
-        if figure.is_none() && self.drive(method).has_tripped {
+        // Only a drive that trips has no usual step.
+        if figure.is_none() && self.drive(method).usual_cycles.is_none() {
             return "tripped".to_owned();
         }
         number(figure, decimals)

@@ -29,7 +29,6 @@ fn drive(limit_pct: f64, cycles: u32, low: AtSpeed, high: AtSpeed) -> Figures {
         speeds: [low, high],
         cycles,
         usual_cycles: Some(cycles / 2),
-        has_tripped: false,
     }
 }
 
@@ -164,7 +163,7 @@ fn with_lost_currents_only_computation_times_are_judged() {
 #[test]
 fn a_tripped_drive_is_told_as_such() {
     let mut readings = [without_current(), without_current()];
-    readings[0].methods[Phcc.index()].has_tripped = true;
+    readings[0].methods[Phcc.index()].usual_cycles = None;
     let claims = claims(readings);
     let [tripped, lost] = &claims[0].figures;
     assert_eq!(tripped, "\u{2013} / \u{2013} / tripped / \u{2013} %");
