@@ -435,8 +435,7 @@ impl<'b> RotorWords<'b> {
             placed,
         };
         self.keep(&edges_now);
-        self.keep_intervals(l, seen, intervals);
-        self.keep_count(l, over);
+        self.keep_measured(l, [seen, intervals], over);
         edges_now
     }
 
@@ -450,18 +449,19 @@ impl<'b> RotorWords<'b> {
         self.rev.set(edges.rev);
     }
 
-    /// Joins the intervals of the open guarded stage and sets their state words.
-    fn keep_intervals(&self, l: &Lowering<'b>, seen: [Expr<'b>; 6], old: [Expr<'b>; 6]) {
+    /// Joins the intervals of the open guarded stage, and the over-speed's count, and sets their words.
+    fn keep_measured(
+        &self,
+        l: &Lowering<'b>,
+        [seen, old]: [[Expr<'b>; 6]; 2],
+        over: Option<Expr<'b>>,
+    ) {
         for (k, word) in self.intervals.into_iter().enumerate() {
             let name = format!("{}_next", INTERVALS[k]);
             let [next] = l.b.join([(&*name, seen[k], old[k])]);
             word.set(next);
         }
-    }
-
-    /// The same of the over-speed's count.
-    fn keep_count(&self, l: &Lowering<'b>, seen: Option<Expr<'b>>) {
-        if let (Some(watch), Some(seen)) = (self.over_speed, seen) {
+        if let Some((watch, seen)) = self.over_speed.zip(over) {
             watch.keep(l, seen);
         }
     }

@@ -55,8 +55,8 @@ pub const IMPROVEMENTS: [Improvement; 3] = [
         about: "PI-PWM with feed-forward of the motor's EMF, 1 kHz, integral time L/R.",
     },
     Improvement {
-        symbol: "step_trivedi_keshri_660w_pdcc_default",
-        variant: "pdcc:hall_capture=timer",
-        about: "The default drive with a Hall timer: PDCC with a current of the EMF's shape in place of the quasi-square one, and an EMF observer.",
+        symbol: "step_trivedi_keshri_660w_pdcc",
+        variant: "pdcc:target=cortex_m4",
+        about: "The default drive: PDCC with a current of the EMF's shape in place of the quasi-square one, and an EMF observer.",
     },
 ];

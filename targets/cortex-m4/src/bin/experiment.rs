@@ -40,8 +40,6 @@ mod drives {
                 reference: quasi_square, saturation: torque_priority, advance: 2, emf: model,
                 discretisation: euler, hall_capture: timer
             };
-        PdccDefault, step_trivedi_keshri_660w_pdcc_default:
-            "../motors/trivedi-keshri-660w.toml", pdcc { hall_capture: timer };
         PhccLiteral, step_trivedi_keshri_660w_phcc_literal:
             "../motors/trivedi-keshri-660w.toml",
             phcc {
