@@ -1,8 +1,9 @@
 //! Generates the drives that the tests compile: a covering array over motors and options for each
 //! kind of controller, and drives with planted faults.
 //!
-//! In a push a motor meets both word lengths; the environment's `HEXAGEN_WHOLE_PRODUCTS` lets it
-//! meet every option value.
+//! In a push a motor meets both word lengths, and of the rows those are compiled that together have
+//! every value and every motor; the environment's `HEXAGEN_WHOLE_PRODUCTS` lets a motor meet every
+//! option value, and compiles all rows.
 
 #[expect(dead_code, reason = "shared with the tests, which use the rest")]
 #[path = "src/library.rs"]
@@ -23,7 +24,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Makes every motor meet every option value.
+/// Makes every motor meet every option value, and compiles every row.
 const WHOLE_PRODUCTS: &str = "HEXAGEN_WHOLE_PRODUCTS";
 
 fn main() {
@@ -35,7 +36,6 @@ fn main() {
     let motors = library::motors();
     write_covering_arrays(&out_dir, &motors);
     write_mutants(&out_dir);
-    write_supervisors(&out_dir);
 }
 
 /// The text of emitted modules with one fault each.
@@ -61,41 +61,6 @@ fn write_mutants(out_dir: &Path) {
          pub const MUTANTS: &[(usize, &str, IsNoticed)] = &[\n{list}];\n"
     );
     fs::write(out_dir.join("mutants.rs"), text + &tail).expect("OUT_DIR can be written");
-}
-
-/// The runtime's supervisor with one fault each, with the runtime's own words, samples and faults.
-fn write_supervisors(out_dir: &Path) {
-    let source = |name: &str| {
-        let path = Path::new("../runtime/src").join(name);
-        println!("cargo:rerun-if-changed={}", path.display());
-        let text = fs::read_to_string(path).expect("a source of the runtime");
-        let text = text.replace("#[cfg(test)]\nmod tests;\n", "");
-        let text: String = text
-            .split_inclusive('\n')
-            .filter(|line| !line.contains("feature = \"defmt\""))
-            .collect();
-        let code = text.split("#[cfg(test)]").next().unwrap_or_default();
-        code.replace("crate::", "super::")
-    };
-    let (sample, status) = (source("sample.rs"), source("status.rs"));
-    let sound = source("supervisor.rs");
-    let mut text = format!("mod sample {{\n{sample}\n}}\nmod status {{\n{status}\n}}\n");
-    let mut list = String::new();
-    let sound = mutation::Mutant {
-        what: "nothing".to_owned(),
-        text: sound.clone(),
-    };
-    let planted = mutation::mutants_of_supervisor(&sound.text);
-    for (number, mutant) in [sound].into_iter().chain(planted).enumerate() {
-        let (what, module) = (mutant.what, mutant.text);
-        writeln!(text, "mod supervisor_{number} {{\n{module}\n}}").expect("a string takes all");
-        writeln!(list, "    ({what:?}, new!(supervisor_{number})),").expect("a string takes all");
-    }
-    let tail = format!(
-        "/// What is wrong, and a supervisor of given limits. First the one without a fault.\n\
-         pub const SUPERVISORS: &[(&str, New)] = &[\n{list}];\n"
-    );
-    fs::write(out_dir.join("supervisors.rs"), text + &tail).expect("OUT_DIR can be written");
 }
 
 /// A drive's emitted module.
@@ -129,8 +94,8 @@ fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
     );
     fs::write(out_dir.join("covering_array.rs"), modules + &tail).expect("OUT_DIR can be written");
     let list = format!(
-        "/// Kind of controller, what the row is, and its specification.\n\
-         pub const SPECIFICATIONS: &[(&str, &str, &str)] = &[\n{specifications}];\n"
+        "/// All rows of the covering arrays.\n\
+         pub const SPECIFICATIONS: &[Row] = &[\n{specifications}];\n"
     );
     fs::write(out_dir.join("covering_specifications.rs"), list).expect("OUT_DIR can be written");
 }
@@ -170,22 +135,31 @@ impl CoveringArray {
         };
         let accepts = |row: &[usize]| generate_toml(&toml(row, None)).is_ok();
         let covering = pairwise::cover(&lengths, is_paired, accepts);
+        let compiled = if is_whole {
+            (0..covering.rows.len()).collect()
+        } else {
+            pairwise::each_value(&covering.rows)
+        };
         for (number, row) in covering.rows.iter().enumerate() {
             let name = format!("{}{number:02}", type_name(kind));
-            let module = emit(&toml(row, Some(&name)), &name).expect("an accepted row generates");
-            array.modules.push_str(&module);
+            let toml = toml(row, Some(&name));
             let (motor, choice) = row.split_last().expect("the motor's axis");
             let what = format!("{name} {} {}", able[*motor].name, kind.describe(choice));
+            let is_compiled = compiled.contains(&number);
             writeln!(
-                array.rows,
-                "    ({:?}, {what:?}, verify::<{name}>),",
+                array.specifications,
+                "    Row {{ kind: {:?}, what: {what:?}, toml: {toml:?}, is_compiled: {is_compiled} }},",
                 kind.name
             )
             .expect("a string takes all");
-            let toml = toml(row, Some(&name));
+            if !is_compiled {
+                continue;
+            }
+            let module = emit(&toml, &name).expect("an accepted row generates");
+            array.modules.push_str(&module);
             writeln!(
-                array.specifications,
-                "    ({:?}, {what:?}, {toml:?}),",
+                array.rows,
+                "    ({:?}, {what:?}, verify::<{name}>),",
                 kind.name
             )
             .expect("a string takes all");

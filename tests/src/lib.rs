@@ -5,6 +5,19 @@
 pub mod cases;
 /// The drives of the covering arrays, from the build script.
 pub mod covering {
+    /// A row of a covering array.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Row {
+        /// Kind of controller.
+        pub kind: &'static str,
+        /// Type name, motor and options.
+        pub what: &'static str,
+        /// Its specification.
+        pub toml: &'static str,
+        /// Its emitted code is compiled in this run.
+        pub is_compiled: bool,
+    }
+
     include!(concat!(env!("OUT_DIR"), "/covering_specifications.rs"));
 }
 pub mod edges;

@@ -1,5 +1,4 @@
-//! Faults planted in text, of emitted code and of the runtime's supervisor: a wrong constant,
-//! shift, sign, rounding or comparison.
+//! Faults planted in emitted text: a wrong constant, shift, sign, rounding or comparison.
 
 use crate::options::Drive;
 use std::ops::Range;
@@ -111,118 +110,12 @@ const KINDS: &[Kind] = &[
     ("branches swapped", swapped_branches),
 ];
 
-/// Further faults of the supervisor.
-const KINDS_OF_SUPERVISOR: &[Kind] = &[
-    ("not left out", |text, code| {
-        replaced(text, code, "!is_", "is_")
-    }),
-    ("a not more", |text, code| {
-        replaced(text, code, "if is_", "if !is_")
-    }),
-    (">= for >", |text, code| replaced(text, code, " > ", " >= ")),
-    ("> for >=", |text, code| replaced(text, code, " >= ", " > ")),
-    (".. for ..=", |text, code| {
-        replaced(text, code, "..=self", "..self")
-    }),
-    ("== for !=", |text, code| {
-        replaced(text, code, " != ", " == ")
-    }),
-    ("&& for ||", |text, code| {
-        replaced(text, code, " || ", " && ")
-    }),
-    ("<< for >>", |text, code| {
-        replaced(text, code, " >> ", " << ")
-    }),
-    (">> for <<", |text, code| {
-        replaced(text, code, " << ", " >> ")
-    }),
-    ("0 for 1", |text, code| replaced(text, code, "(1)", "(0)")),
-    ("1 for 0", |text, code| replaced(text, code, "= 0;", "= 1;")),
-    ("0 for a count", |text, code| {
-        replaced(text, code, " + 1)", " + 0)")
-    }),
-    ("another mode", |text, code| {
-        let modes = [
-            "Run",
-            "Calibrate",
-            "Precharge",
-            "Tripped",
-            "Coast",
-            "Brake",
-            "Start",
-        ];
-        let pairs = modes.iter().zip(modes.iter().cycle().skip(1));
-        let edits = pairs.flat_map(|(mode, next)| {
-            let [mode, next] = [mode, next].map(|mode| format!("Mode::{mode}"));
-            replaced(text, code, &mode, &next)
-        });
-        edits.collect()
-    }),
-    ("another fault", |text, code| {
-        let faults = ["AdcRange", "Hall", "OverCurrent", "Stall", "Offset"];
-        let pairs = faults.iter().zip(faults.iter().cycle().skip(1));
-        let edits = pairs.flat_map(|(fault, next)| {
-            let [fault, next] = [fault, next].map(|fault| format!("Fault::{fault}"));
-            replaced(text, code, &fault, &next)
-        });
-        edits.collect()
-    }),
-    ("another leg state", |text, code| {
-        let low = replaced(text, code, "LegState::Low", "LegState::Off");
-        [low, replaced(text, code, "LegState::Off", "LegState::Low")].concat()
-    }),
-    ("phases exchanged", |text, code| {
-        let names = [
-            ("count_a", "count_b"),
-            ("sum_a", "sum_b"),
-            ("first", "second"),
-        ];
-        let edits = names.into_iter().flat_map(|(name, other)| {
-            // At its uses, not its declaration.
-            let used = |edit: &Edit| !text[..edit.range.start].ends_with('[');
-            replaced(text, code, name, other)
-                .into_iter()
-                .filter(used)
-                .collect::<Vec<_>>()
-        });
-        edits.collect()
-    }),
-];
-
 /// Mutants of an emitted drive, `per_kind` of every kind with sites in it, spread evenly.
 pub fn mutants(text: &str, per_kind: usize) -> Vec<Mutant> {
-    mutants_in(text, &code_lines(text), KINDS, per_kind)
-}
-
-/// All mutants of the supervisor, except `Limits::hold` (with planted faults in its own tests) and
-/// the access to its words.
-///
-/// # Panics
-///
-/// If the text is not the supervisor's.
-pub fn mutants_of_supervisor(text: &str) -> Vec<Mutant> {
-    let behind = text.find("    /// Counts, none above the ADC's range.");
-    let mut start = behind.expect("what stands behind `Limits::hold`");
-    let end = text.find("    /// Mode and fault of the drive.");
-    let end = end.expect("what stands before the words");
-    let mut code = vec![];
-    for line in text[start..end].split_inclusive('\n') {
-        let trimmed = line.trim_start();
-        // Every mode has its arm, every word its name.
-        let is_row = trimmed.starts_with("Mode::") || trimmed.starts_with('"');
-        if !is_row && !trimmed.starts_with("//") && !trimmed.starts_with('#') {
-            code.push(start..start + line.len());
-        }
-        start += line.len();
-    }
-    let kinds = [KINDS, KINDS_OF_SUPERVISOR].concat();
-    mutants_in(text, &code, &kinds, usize::MAX)
-}
-
-fn mutants_in(text: &str, code: &[Range<usize>], kinds: &[Kind], per_kind: usize) -> Vec<Mutant> {
+    let code = code_lines(text);
     let mut found = vec![];
-    for (kind, sites) in kinds {
-        let edits = sites(text, code);
+    for (kind, sites) in KINDS {
+        let edits = sites(text, &code);
         let wanted = per_kind.min(edits.len());
         for number in 0..wanted {
             // The middle of each of `wanted` equal parts.

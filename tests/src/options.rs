@@ -8,7 +8,10 @@ use crate::library::{Motor, motor};
 use hexagen_codegen::diagnostics::Diagnostics;
 use hexagen_codegen::pipeline::{Generated, generate};
 use hexagen_codegen::spec::{KINDS, Rule, Spec, check, parse_toml};
+use std::cell::LazyCell;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::Mutex;
 use toml_edit::{DocumentMut, Item, Table};
 
 /// Setting of an option's value: section, field, TOML value.
@@ -715,14 +718,9 @@ impl Kind {
                 .expect("a TOML value")["x"]
                 .clone()
         };
-        let Supply {
-            bus,
-            range,
-            fade,
-            speed,
-        } = Supply::of(&motor.text);
-        let volts = |share: f64| text(&format!("\"{} V\"", bus * share));
-        let amperes = |share: f64| text(&format!("\"{} A\"", range * share));
+        let supply = LazyCell::new(|| Supply::known(&motor.text));
+        let volts = |share: f64| text(&format!("\"{} V\"", supply.bus * share));
+        let amperes = |share: f64| text(&format!("\"{} A\"", supply.range * share));
         document["controller"] = Item::Table(Table::new());
         document["controller"]["kind"] = text(&format!("\"{}\"", self.name));
         for (axis, &value) in self.axes.iter().zip(choice) {
@@ -735,10 +733,10 @@ impl Kind {
                 }
                 document[*section][*field] = match setting.as_str() {
                     BUS_RANGE => volts(1.6),
-                    FADE => volts(fade),
+                    FADE => volts(supply.fade),
                     DRAWN => amperes(0.1),
                     RETURNED => amperes(0.04),
-                    OVER_SPEED => text(&format!("\"{} rpm\"", 1.25 * speed)),
+                    OVER_SPEED => text(&format!("\"{} rpm\"", 1.25 * supply.speed)),
                     _ => text(setting),
                 };
             }
@@ -776,7 +774,11 @@ fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
+/// Those of each motor file so far: to check one takes longer than all else of a drive's text.
+static SUPPLIES: Mutex<BTreeMap<String, Supply>> = Mutex::new(BTreeMap::new());
+
 /// Numbers of a motor file, of which its board may have written a part.
+#[derive(Clone, Copy)]
 struct Supply {
     /// Volt.
     bus: f64,
@@ -789,6 +791,13 @@ struct Supply {
 }
 
 impl Supply {
+    fn known(text: &str) -> Self {
+        let mut known = SUPPLIES.lock().expect("no thread panics with it");
+        *known
+            .entry(text.to_owned())
+            .or_insert_with(|| Self::of(text))
+    }
+
     fn of(text: &str) -> Self {
         let ast = parse_toml(text, "motor.toml");
         let has_board = ast.as_ref().is_ok_and(|ast| ast.board.is_some());

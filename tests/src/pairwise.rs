@@ -42,7 +42,10 @@ pub fn cover(
         let random = (0..ATTEMPTS).map(|_| order.row(lengths));
         let known: BTreeSet<Vec<usize>> = witnesses.values().cloned().collect();
         let rows = first.chain(random).chain(known);
-        let mut rows = rows.map(|row| with_pair(row, pair));
+        // No row is accepted with a pair that has none, and to check a row takes long.
+        let mut rows = rows
+            .map(|row| with_pair(row, pair))
+            .filter(|row| !covering.open.iter().any(|pair| covers(row, *pair)));
         if let Some(row) = rows.find(|row| accepts(row)) {
             let known = pairs.iter().filter(|pair| covers(&row, **pair));
             witnesses.extend(known.map(|pair| (*pair, row.clone())));
@@ -62,6 +65,22 @@ pub fn cover(
         covering.rows.push(row);
     }
     covering
+}
+
+/// Places of few rows in which every value of every axis occurs that occurs in any.
+pub fn each_value(rows: &[Vec<usize>]) -> Vec<usize> {
+    let values = |row: &[usize]| row.iter().copied().enumerate().collect::<BTreeSet<_>>();
+    let mut open: BTreeSet<(usize, usize)> = rows.iter().flat_map(|row| values(row)).collect();
+    let mut taken = BTreeSet::new();
+    while !open.is_empty() {
+        let gain = |place: &usize| values(&rows[*place]).intersection(&open).count();
+        let Some(place) = (0..rows.len()).max_by_key(gain) else {
+            break;
+        };
+        open = &open - &values(&rows[place]);
+        taken.insert(place);
+    }
+    taken.into_iter().collect()
 }
 
 /// The pairs to cover, the first axes first.
@@ -153,7 +172,24 @@ impl Shuffle {
 
 #[cfg(test)]
 mod tests {
-    use super::{cover, covers};
+    use super::{cover, covers, each_value};
+
+    #[test]
+    fn every_value_is_in_one_of_few_rows() {
+        let covering = cover(&[3, 2, 4, 2, 3], |_, _| true, |row| row[0] + row[1] < 3);
+        let places = each_value(&covering.rows);
+        assert!(places.len() <= 6, "{places:?}");
+        for (axis, length) in [3, 2, 4, 2, 3].into_iter().enumerate() {
+            let mut values: Vec<usize> = places
+                .iter()
+                .map(|place| covering.rows[*place][axis])
+                .collect();
+            values.sort_unstable();
+            values.dedup();
+            assert_eq!(values, (0..length).collect::<Vec<_>>());
+        }
+        assert_eq!(each_value(&[]), [0; 0]);
+    }
 
     #[test]
     fn every_pair_is_in_a_row_or_told() {

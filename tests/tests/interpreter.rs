@@ -1,6 +1,7 @@
 //! The interpreted IR equals the bit-true model in every output and state bit.
 
 use hexagen_codegen::ir::{Machine, Output, Program};
+use hexagen_tests::covering::SPECIFICATIONS;
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_states};
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{Kind, Meeting, generate_toml, kind, kinds};
@@ -16,10 +17,13 @@ const PRODUCT_STEPS: u64 = 500;
 
 /// Elements of a kind's product in a push; the environment's `HEXAGEN_WHOLE_PRODUCTS` takes all.
 /// That of FCS-MPC is longer.
-const MOST_OF_A_PRODUCT: usize = 5_000;
+const MOST_OF_A_PRODUCT: usize = 1_000;
+
+/// Steps of each row of the covering arrays.
+const ROW_STEPS: u64 = 4_000;
 
 /// Drives of each library motor and kind, and steps of each of them.
-const SAMPLE: usize = 24;
+const SAMPLE: usize = 8;
 const SAMPLE_STEPS: u64 = 2_000;
 
 /// Codes of options that exclude each other, and of boards whose legs exclude an option.
@@ -144,6 +148,22 @@ fn default_drive_of_the_paper_motor() {
         compare_states(&generated, program, DEFAULT_STEPS, 1)
             .unwrap_or_else(|what| panic!("{what}"));
     }
+}
+
+#[test]
+fn every_pair_of_option_values() {
+    let failures: Vec<String> = SPECIFICATIONS
+        .par_iter()
+        .enumerate()
+        .filter_map(|(seed, row)| {
+            let (_, generated) = generate_toml(row.toml).expect("a row generates");
+            let (program, seed) = (generated.graph.program(), seed as u64);
+            let compared = compare(&generated, program, ROW_STEPS, seed)
+                .and_then(|_| compare_states(&generated, program, ROW_STEPS / 8, seed));
+            compared.err().map(|what| format!("{}\n{what}", row.what))
+        })
+        .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// All combinations of the options that depend on each other, or [`MOST_OF_A_PRODUCT`] of them. The

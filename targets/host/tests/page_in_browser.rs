@@ -13,7 +13,6 @@ use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
 use headless_chrome::protocol::cdp::Input::DispatchTouchEventTypeOption::{
     TouchEnd, TouchMove, TouchStart,
 };
-use hexagen_codegen::spec::{CurrentSensing, EmfShape, RotorSensing, Spec};
 use hexagen_host::render;
 use hexagen_lab::engine::{PlantOptions, SelectedMotor};
 use hexagen_lab::report::{Page, reproduction_page, results_page};
@@ -84,33 +83,6 @@ fn page_of(motor: &str) -> PathBuf {
     file(&results_page(&data), &format!("motors/{motor}"))
 }
 
-/// What a drive is made for.
-type Kind = fn(&Spec) -> bool;
-
-/// A sinusoidal motor with sensors in the phases, one with an angle sensor, and one with shunts in the low legs.
-#[test]
-fn real_pages_of_three_kinds_of_drives_are_right() {
-    let kinds: [(&str, Kind); 3] = [
-        ("teknic-m2310p", |spec| {
-            spec.motor.emf_shape == EmfShape::Sinusoidal
-        }),
-        ("mit-mini-cheetah", |spec| {
-            matches!(spec.inverter.rotor_sensing, RotorSensing::Angle(_))
-        }),
-        ("hoverboard-hub", |spec| {
-            matches!(spec.inverter.current_sensing, CurrentSensing::LowSide(_))
-        }),
-    ];
-    for (motor, is_kind) in kinds {
-        let found = SelectedMotor::find(motor, &PlantOptions::default()).expect("is there");
-        assert!(
-            is_kind(&found.prepare(None).expect("a drive").spec),
-            "{motor}"
-        );
-        assert_nothing_overlaps(&page_of(motor));
-    }
-}
-
 /// Greatest size of a library motor's page in bytes, well below a megabyte.
 const MOST: u64 = 850_000;
 
@@ -131,22 +103,20 @@ fn every_motors_page_is_small_and_nothing_overlaps() {
 
 #[test]
 fn links_of_the_navigation_lead_to_their_headings() {
-    for file in [&*REPORT, &*EXPERIMENT] {
-        for width in [390, 800, 1280] {
-            let Some(page) = load(file, width, "light") else {
-                return;
-            };
-            let links = page.ask("document.querySelectorAll('nav a').length");
-            let links = links.as_u64().expect("a number");
-            assert!(links > 10, "{links} links");
-            // The first click scrolls past plots that nobody has seen yet. Each scroll takes a second: the
-            // others jump.
-            for link in (0..links).rev() {
-                let is_first = link + 1 == links;
-                page.assert_none(&format!("missedHeading({link}, {is_first})"));
-            }
-            page.assert_no_errors();
+    for (file, width) in [(&*REPORT, 390), (&*EXPERIMENT, 800), (&*REPORT, 1280)] {
+        let Some(page) = load(file, width, "light") else {
+            return;
+        };
+        let links = page.ask("document.querySelectorAll('nav a').length");
+        let links = links.as_u64().expect("a number");
+        assert!(links > 10, "{links} links");
+        // The first click scrolls past plots that nobody has seen yet. Each scroll takes a second: the
+        // others jump.
+        for link in (0..links).rev() {
+            let is_first = link + 1 == links;
+            page.assert_none(&format!("missedHeading({link}, {is_first})"));
         }
+        page.assert_no_errors();
     }
 }
 

@@ -169,6 +169,7 @@ fn every_library_motor_is_right_by_default() {
 }
 
 #[test]
+#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
 fn every_library_motor_is_right_with_an_encoder() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let drives = prepared(&motors).into_iter().map(|drive| {
@@ -180,6 +181,7 @@ fn every_library_motor_is_right_with_an_encoder() {
 
 /// What counts as a limit of the data is one: exact control ripples no more than the drive where that is right.
 #[test]
+#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
 fn exact_control_ripples_no_more_than_a_drive() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let found = prepared(&motors).into_iter().flat_map(|drive| {
@@ -226,6 +228,7 @@ const STARTED: usize = 20;
 /// the nightly run's 3200 points 30 more are not, of five motors, and 24 of these of two motors whose current a count
 /// of their timer moves by 1.5 % of the rated one. No start fails.
 #[test]
+#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
 fn random_motors_are_right_by_default() {
     // Motors with an edge timer, and periods short enough for them.
     let drawn = random_drives(0, "pdcc", DRAWN, |drive| can_be_right(&drive.spec));

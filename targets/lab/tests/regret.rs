@@ -50,6 +50,7 @@ fn the_default_drive_is_as_good_as_any_on_every_library_motor() {
 }
 
 #[test]
+#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
 fn the_default_drive_is_as_good_as_any_on_random_motors() {
     let drawn = random_drives(1000, DEFAULT, DRAWN, |drive| can_be_right(&drive.spec));
     let motors = drawn.iter().map(|drive| {

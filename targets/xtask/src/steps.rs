@@ -1,7 +1,7 @@
 //! The steps of each task: cargo commands with their prerequisites.
 
 use crate::step::{Step, cargo, root, step};
-use crate::{editors, install, packages, readme};
+use crate::{install, packages, readme};
 use std::env;
 use std::process::Command;
 use std::time::Instant;
@@ -178,6 +178,18 @@ pub fn faults() -> Step {
     }
 }
 
+/// Tests whose size the environment sets; in a push they are small.
+const SIZED: [&str; 8] = [
+    "c99",
+    "decisions",
+    "defaults",
+    "equivalence",
+    "interpreter",
+    "planted_faults",
+    "proofs",
+    "regret",
+];
+
 /// Steps too long for a push.
 ///
 /// # Errors
@@ -206,103 +218,32 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
         "all",
         "--coq",
     ];
-    let checked = ["test", "--package", "hexagen-host", "--test", "proofs"];
-    let interpreter = [
-        "test",
-        "--package",
-        "hexagen-tests",
-        "--test",
-        "interpreter",
-        "full_product",
-    ];
-    let pages = [
-        "test",
-        "--package",
-        "hexagen-host",
-        "--test",
-        "page_in_browser",
-        "--",
-        "--ignored",
-        "--nocapture",
-    ];
-    let decisions = ["test", "--package", "hexagen-tests", "--test", "decisions"];
+    let studies = ["test", "--workspace", "--no-fail-fast", "--", "--ignored"];
+    let mut whole = vec!["test", "--workspace", "--no-fail-fast"];
+    whole.extend(SIZED.iter().flat_map(|test| ["--test", test]));
+    whole.extend(["--", "--include-ignored", "--nocapture"]);
     Ok(vec![
         packages::pack(true)?,
         step("verification", &verify),
         Step {
-            environment: vec![("HEXAGEN_DECISIONS", "100000000")],
-            ..step("decisions", &decisions)
-        },
-        Step {
-            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
-            ..step("whole products of options", &interpreter)
-        },
-        faults(),
-        Step {
-            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
-            ..step(
-                "every motor with every option value",
-                &[
-                    "test",
-                    "--package",
-                    "hexagen-tests",
-                    "--test",
-                    "equivalence",
-                ],
-            )
-        },
-        Step {
-            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
-            ..step(
-                "all emitted C, checked and unchecked",
-                &["test", "--package", "hexagen-lab", "--test", "c99"],
-            )
-        },
-        Step {
-            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
-            ..step(
-                "default drives of random motors",
-                &["test", "--package", "hexagen-lab", "--test", "defaults"],
-            )
-        },
-        Step {
-            environment: vec![("HEXAGEN_WHOLE_PRODUCTS", "1")],
-            ..step(
-                "regret of the rule over random motors",
-                &["test", "--package", "hexagen-lab", "--test", "regret"],
-            )
-        },
-        step("pages of all motors", &pages),
-        step(
-            "disturbances, alone and in pairs",
-            &[
-                "test",
-                "--package",
-                "hexagen-lab",
-                "--test",
-                "disturbed",
-                "--test",
-                "pairs",
-                "--",
-                "--ignored",
+            environment: vec![
+                ("HEXAGEN_WHOLE_PRODUCTS", "1"),
+                ("HEXAGEN_DECISIONS", "100000000"),
+                ("HEXAGEN_ALL_FAULTS", "1"),
+                ("HEXAGEN_COQ", "1"),
+                ("HEXAGEN_RANDOM_MOTORS", "1000"),
             ],
-        ),
+            ..step("whole products of options, all faults", &whole)
+        },
+        // Those of editors, too.
+        step("studies", &studies),
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),
         on_target("programs", &[]),
-        editors::session(),
         install::program(),
         step("proofs", &prove),
         step("certificates of the library", &certify),
         step("certificates of all controllers", &certify_all),
-        Step {
-            environment: vec![
-                ("HEXAGEN_COQ", "1"),
-                ("HEXAGEN_ALL_FAULTS", "1"),
-                ("HEXAGEN_RANDOM_MOTORS", "1000"),
-            ],
-            ..step("proofs of random motors, false proofs", &checked)
-        },
     ])
 }
 

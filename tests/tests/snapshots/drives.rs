@@ -264,9 +264,9 @@ pub fn others() -> Vec<Drive> {
     }
     // A motor without the controller has none of its texts.
     drives.retain(|(_, toml)| generate_toml(toml).is_ok());
-    drives.extend(SPECIFICATIONS.iter().map(|(_, what, toml)| {
-        let name: Vec<&str> = what.split(' ').take(2).collect();
-        (name.join(" "), (*toml).to_owned())
+    drives.extend(SPECIFICATIONS.iter().map(|row| {
+        let name: Vec<&str> = row.what.split(' ').take(2).collect();
+        (name.join(" "), row.toml.to_owned())
     }));
     let drives = drives.par_iter().map(|(name, toml)| {
         let generated = generate_toml(&specification(toml, &[]));

@@ -230,13 +230,6 @@ impl<'a> Reader<'a> {
 
     fn prefixed(&self, name: &str) -> Option<Product> {
         NAMES.iter().find_map(|known| {
-            // The other meaning of a weight.
-            let has_two = NAMES
-                .iter()
-                .any(|other| other.weighs && other.spellings == known.spellings);
-            if has_two && known.weighs != self.weighs {
-                return None;
-            }
             let [times, over] = known.spellings.iter().find_map(|spelling| {
                 let before = name.strip_suffix(spelling)?;
                 let mut letters = before.chars();
@@ -246,6 +239,13 @@ impl<'a> Reader<'a> {
                     _ => None,
                 }
             })?;
+            // The other meaning of a weight.
+            let has_two = NAMES
+                .iter()
+                .any(|other| other.weighs && other.spellings == known.spellings);
+            if has_two && known.weighs != self.weighs {
+                return None;
+            }
             let mut product = Product {
                 times: known.factor[0] * times,
                 over: known.factor[1] * over,

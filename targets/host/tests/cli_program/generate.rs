@@ -1,6 +1,6 @@
 //! `hexagen generate` and `motors`: the same bytes every time, to stdout and to files.
 
-use crate::support::{PAPER, keys, number, run};
+use crate::support::{LIBRARY, LIBRARY_AS_JSON, PAPER, keys, number, run};
 use serde_json::Value;
 use std::fs;
 
@@ -91,9 +91,8 @@ fn the_library_is_listed() {
         file.stdout.starts_with("board = \"hoverboard\"\n"),
         "{file:?}"
     );
-    let library = run(["motors", "--json"]).json();
-    let motors = library["motors"].as_array().expect("a list");
-    assert_eq!(keys(&library), ["motors"]);
+    let motors = LIBRARY_AS_JSON["motors"].as_array().expect("a list");
+    assert_eq!(keys(&LIBRARY_AS_JSON), ["motors"]);
     assert!(motors.len() >= 12);
     let paper = motors
         .iter()
@@ -120,7 +119,7 @@ fn the_library_is_listed() {
         (percent / 100.0 * 3.3 / torque - 1.0).abs() < 1e-4,
         "{percent} % {torque} Nm"
     );
-    let table = run(["motors"]).stdout;
+    let table = &LIBRARY.stdout;
     for motor in motors {
         let most = if number(motor, "degrees_per_period") <= 8.0 {
             3.0

@@ -1,6 +1,6 @@
 //! From a data sheet to a checked drive: `new`, `check`, `explain`, `completions`.
 
-use crate::support::{PAPER, Said, hexagen, number, run};
+use crate::support::{LIBRARY_AS_JSON, PAPER, Said, hexagen, number, run};
 use hexagen_lab::engine::MotorSource;
 use std::fs;
 use std::process::Stdio;
@@ -231,8 +231,7 @@ pub fn assert_lines(said: &Said, most: usize) {
 
 #[test]
 fn every_motor_of_the_library_is_checked() {
-    let list = run(["motors", "--json"]).json();
-    for motor in list["motors"].as_array().expect("motors") {
+    for motor in LIBRARY_AS_JSON["motors"].as_array().expect("motors") {
         let name = motor["name"].as_str().expect("a name");
         let said = run(["check", name]);
         if motor["generates"] == true {

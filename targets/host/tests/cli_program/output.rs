@@ -13,7 +13,7 @@ fn a_result_that_cannot_be_written_is_an_error() {
         &["simulate", PAPER, "--rpm", "1500", "--json"],
         &["simulate", PAPER, "--rpm", "1500"],
         &["limit", PAPER, "--start-angle", "0.1rad"],
-        &["motors"],
+        &["boards"],
         &["--help"],
     ] {
         let full = fs::File::create("/dev/full").expect("Linux has it");
@@ -31,7 +31,7 @@ fn a_result_that_cannot_be_written_is_an_error() {
 #[test]
 fn messages_that_cannot_be_written_change_nothing() {
     let full = || fs::File::create("/dev/full").expect("Linux has it");
-    let output = hexagen().args(["motors"]).stderr(full()).output();
+    let output = hexagen().args(["check", PAPER]).stderr(full()).output();
     assert_eq!(Said::from(output.expect("the program starts")).code, 0);
     let output = hexagen()
         .args(["generate", "nothing"])

@@ -3,6 +3,7 @@
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 /// The motor that most tests run: known by name.
 pub const PAPER: &str = "trivedi-keshri-660w";
@@ -66,6 +67,12 @@ impl Said {
         }
     }
 }
+
+/// What `motors` says; simulating the whole library takes long.
+pub static LIBRARY: LazyLock<Said> = LazyLock::new(|| run(["motors"]));
+
+/// What `motors --json` says.
+pub static LIBRARY_AS_JSON: LazyLock<Value> = LazyLock::new(|| run(["motors", "--json"]).json());
 
 /// The keys of an object, in their order.
 #[track_caller]

@@ -1,0 +1,248 @@
+//! The runtime's supervisor, alone, equals the bit-true model's supervision, in streams and from
+//! arbitrary states. `cargo xtask mutants --only runtime` counts the faults that this detects.
+
+use hexagen::{Command, Limits, Rest, Sample, Sensors, Supervisor};
+use hexagen_codegen::pipeline::Generated;
+use hexagen_lab::{formats, limits, sensors};
+use hexagen_reference::verify::{Action, Context, Stimulus};
+use hexagen_reference::{BitTrue, FormatTable, Mode, Spec, Stop};
+use hexagen_tests::options::{Drive, generate_toml};
+use hexagen_tests::sensors::{SHORT, specification};
+use hexagen_tests::states::States;
+
+/// Drives that together use everything of a supervisor. Their laws store the last currents.
+const DRIVES: [Drive; 4] = [
+    Drive {
+        kind: "pdcc",
+        motor: "hoverboard-hub",
+        settings: &[("stall_timeout", "100ms"), ("start_up", "short")],
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "estun-emj-04apb22",
+        settings: &[("adc_inverted", "on"), ("start_up", "brief")],
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "teknic-m2310p",
+        settings: &[
+            ("word", "16"),
+            ("stall_timeout", "100ms"),
+            ("start_up", "short"),
+            ("halls", "bridged"),
+        ],
+    },
+    Drive {
+        kind: "pdcc",
+        motor: "trivedi-keshri-660w",
+        settings: &[
+            ("v_bus", "measured"),
+            ("halls", "bridged_60_degrees"),
+            ("start_up", "short"),
+        ],
+    },
+];
+
+/// Sensors of further drives: in other phases, unlike, and three of them.
+const SENSORS: [&str; 5] = [
+    "sensed_phases = \"bc\"\nadc_inverted = [\"on\", \"off\"]\nadc_offset = [2100, 2011]",
+    "sensed_phases = \"ca\"\nadc_offset = [2000, 2048]",
+    "sensed_phases = \"abc\"\nadc_gain = [\"20 mA/count\", \"25 mA/count\", \"18 mA/count\"]\ncurrent_sum_samples = 2",
+    "sensed_phases = \"abc\"\nadc_offset = [2000, 2048, 2100]\nadc_inverted = [\"off\", \"off\", \"on\"]\ncurrent_sum_samples = 3\n\
+     current_sensing = \"low_side\"\nsettling_time = \"2.5 us\"\naperture_time = \"200 ns\"\nconversion_time = \"0 us\"",
+    "sensed_phases = \"abc\"\ncurrent_sum_samples = 0",
+];
+
+/// Steps of a drive in streams, and from arbitrary states.
+const STEPS: u64 = 200_000;
+
+/// A drive.
+struct Supervised {
+    generated: Generated,
+    spec: Spec,
+    model: BitTrue,
+    limits: Limits,
+    sensors: Sensors,
+}
+
+impl Supervised {
+    fn of(toml: &str) -> Self {
+        let (_, generated) = generate_toml(toml).expect("the drive generates");
+        let interface = &generated.interface;
+        let spec = Spec::from_toml(&interface.spec_toml).expect("a specification");
+        let table = FormatTable::new(&formats(&interface.formats));
+        Self {
+            model: BitTrue::new(&spec, &table).expect("a model"),
+            limits: limits(&interface.limits),
+            sensors: sensors(&interface.limits),
+            spec,
+            generated,
+        }
+    }
+
+    fn assert_equal_in_streams(&self) {
+        let mut stimulus = Stimulus::new(&self.spec, 1).expect("a stimulus");
+        let mut pair = Pair::new(self);
+        stimulus.restart();
+        for _ in 0..STEPS {
+            let context = Context {
+                offset: pair.model.offset_counts(),
+                tripped: pair.model.mode() == Mode::Tripped,
+            };
+            let (action, sample) = stimulus.next(&context);
+            match action {
+                Some(Action::SetCurrent(bits)) => pair.model.set_current(bits),
+                Some(Action::SetTorque(bits)) => pair.model.set_torque(bits),
+                Some(Action::SetBus(counts)) => pair.set_bus(counts),
+                Some(Action::Reset) => pair.reset(),
+                Some(Action::Calibrate) => pair.calibrate(),
+                Some(Action::Precharge) => pair.precharge(),
+                Some(Action::Stop(stop)) => pair.stop(stop),
+                _ => {}
+            }
+            pair.step(&sample);
+            stimulus.respond(pair.command);
+        }
+    }
+
+    fn assert_equal_from_states(&self) {
+        let mut pair = Pair::new(self);
+        let names = self.model.state_names();
+        let mut states = States::new(&self.spec, &self.generated, &names, 1);
+        for number in 0..STEPS {
+            pair.model.set_current(states.set_point(1e6));
+            let sample = states.fill(&mut pair.words);
+            pair.model.set_state_words(&pair.words);
+            let own = pair.words.first_chunk();
+            pair.supervisor
+                .set_words(*own.expect("the supervisor's words"));
+            match number % 12 {
+                0 => pair.reset(),
+                1 => pair.calibrate(),
+                2 => pair.precharge(),
+                3 => pair.stop(Stop::Coast),
+                4 => pair.stop(Stop::Brake),
+                5 => pair.stop(Stop::Resume),
+                6 if pair.model.has_measured_bus() => pair.set_bus(states.bus_counts()),
+                _ => {}
+            }
+            pair.step(&sample);
+        }
+    }
+}
+
+/// A supervisor and the model that it supervises.
+struct Pair {
+    supervisor: Supervisor,
+    limits: Limits,
+    sensors: Sensors,
+    model: BitTrue,
+    words: Vec<i32>,
+    /// Indices of the last currents.
+    currents: [usize; 2],
+    command: hexagen_reference::AnyCommand,
+}
+
+impl Pair {
+    fn new(drive: &Supervised) -> Self {
+        let names = drive.model.state_names();
+        let place = |name| names.iter().position(|known| *known == name);
+        Self {
+            supervisor: Supervisor::new(&drive.limits, &drive.sensors),
+            limits: drive.limits,
+            sensors: drive.sensors,
+            model: drive.model.clone(),
+            words: vec![0; names.len()],
+            currents: ["i_a_prev", "i_b_prev"]
+                .map(|name| place(name).expect("a law with currents")),
+            command: hexagen_reference::AnyCommand::default(),
+        }
+    }
+
+    fn set_bus(&mut self, counts: u16) {
+        self.model.set_bus(counts);
+        if let Some(fault) = self.limits.bus_fault(counts) {
+            self.supervisor.trip(fault);
+        }
+    }
+
+    fn reset(&mut self) {
+        self.model.reset();
+        self.supervisor.reset(&self.limits, &self.sensors);
+    }
+
+    fn calibrate(&mut self) {
+        self.model.calibrate();
+        self.supervisor.calibrate(&self.limits);
+    }
+
+    fn precharge(&mut self) {
+        self.model.precharge();
+        self.supervisor.precharge(&self.limits);
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        self.model.stop(stop);
+        match stop {
+            Stop::Coast => self.supervisor.coast(),
+            Stop::Brake => self.supervisor.brake(),
+            Stop::Resume => {
+                self.supervisor.resume();
+            }
+        }
+    }
+
+    /// A period of both.
+    #[track_caller]
+    fn step(&mut self, sample: &Sample) {
+        let (limits, sensors) = (&self.limits, &self.sensors);
+        let demanded = self.model.set_point_words()[0];
+        let checked = self
+            .supervisor
+            .check(limits, sensors, sample, || demanded != 0.0);
+        let (checked, rest) = match checked {
+            Some(checked) => (checked, Rest::Control),
+            None => self.supervisor.rest(limits, sensors, sample),
+        };
+        self.command = self.model.step(sample);
+        self.model.state_words(&mut self.words);
+        let legs = match rest {
+            Rest::Legs(legs) => Some(legs),
+            Rest::Control | Rest::Against(_) => {
+                self.supervisor
+                    .follow_command(sensors, Command::on(self.command));
+                None
+            }
+        };
+        let expected = (!self.model.trace().run).then(|| self.command.state()[0]);
+        assert_eq!(legs, expected, "{sample:?}");
+        if let Rest::Against(direction) = rest {
+            // The model demands the largest torque against the direction, or none.
+            let demanded = self.model.set_point_words()[0];
+            let is_opposed = match direction.0 {
+                0 => demanded == 0.0,
+                direction => demanded * f64::from(direction) < 0.0,
+            };
+            assert!(is_opposed, "{demanded} against {direction:?}");
+        }
+        let words = self.supervisor.words();
+        assert_eq!(&self.words[..words.len()], words, "{sample:?}");
+        let currents = self.currents.map(|place| self.words[place]);
+        assert_eq!([checked.i_a().0, checked.i_b().0], currents, "{sample:?}");
+    }
+}
+
+#[test]
+fn supervisor_and_model_agree() {
+    let sensors = SENSORS.iter().map(|sensors| {
+        Supervised::of(&specification(
+            &format!("{SHORT}{sensors}"),
+            "kind = \"pdcc\"",
+        ))
+    });
+    let drives = DRIVES.iter().map(|drive| Supervised::of(&drive.toml(None)));
+    for drive in drives.chain(sensors) {
+        drive.assert_equal_in_streams();
+        drive.assert_equal_from_states();
+    }
+}
