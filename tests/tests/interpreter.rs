@@ -17,7 +17,7 @@ const PRODUCT_STEPS: u64 = 500;
 
 /// Elements of a kind's product in a push; the environment's `HEXAGEN_WHOLE_PRODUCTS` takes all.
 /// That of FCS-MPC is longer.
-const MOST_OF_A_PRODUCT: usize = 1_000;
+const MOST_OF_A_PRODUCT: usize = 2_500;
 
 /// Steps of each row of the covering arrays.
 const ROW_STEPS: u64 = 4_000;
