@@ -1,5 +1,5 @@
-//! Generates the drives that the tests compile: a covering array over motors and options for each
-//! kind of controller, and drives with planted faults.
+//! Generates covering arrays over motors and options for each kind of controller, the code of those of
+//! their drives that the tests compile, and drives with planted faults.
 //!
 //! In a push a motor meets both word lengths, and of the rows those are compiled that together have
 //! every value and every motor; the environment's `HEXAGEN_WHOLE_PRODUCTS` lets a motor meet every
@@ -100,8 +100,8 @@ fn write_covering_arrays(out_dir: &Path, motors: &[Motor]) {
     fs::write(out_dir.join("covering_specifications.rs"), list).expect("OUT_DIR can be written");
 }
 
-/// Text of a kind's drives: every pair of option values, and every motor with both word lengths or
-/// with every option value.
+/// Rows of a kind, with every pair of option values, and every motor with both word lengths or with
+/// every option value: specifications of all, code of those that are compiled.
 #[derive(Default)]
 struct CoveringArray {
     modules: String,

@@ -774,7 +774,7 @@ fn combinations(axes: &[Axis]) -> usize {
     axes.iter().map(|axis| axis.values.len()).product()
 }
 
-/// Those of each motor file so far: to check one takes longer than all else of a drive's text.
+/// Supplies of the motor files so far; to check a file takes longer than all else.
 static SUPPLIES: Mutex<BTreeMap<String, Supply>> = Mutex::new(BTreeMap::new());
 
 /// Numbers of a motor file, of which its board may have written a part.
@@ -792,10 +792,13 @@ struct Supply {
 
 impl Supply {
     fn known(text: &str) -> Self {
-        let mut known = SUPPLIES.lock().expect("no thread panics with it");
-        *known
-            .entry(text.to_owned())
-            .or_insert_with(|| Self::of(text))
+        let known = || SUPPLIES.lock().expect("no thread panics with it");
+        let found = known().get(text).copied();
+        found.unwrap_or_else(|| {
+            let supply = Self::of(text);
+            known().insert(text.to_owned(), supply);
+            supply
+        })
     }
 
     fn of(text: &str) -> Self {

@@ -42,7 +42,7 @@ pub fn cover(
         let random = (0..ATTEMPTS).map(|_| order.row(lengths));
         let known: BTreeSet<Vec<usize>> = witnesses.values().cloned().collect();
         let rows = first.chain(random).chain(known);
-        // No row is accepted with a pair that has none, and to check a row takes long.
+        // A row with a pair for which none was found is left out: to check one takes long.
         let mut rows = rows
             .map(|row| with_pair(row, pair))
             .filter(|row| !covering.open.iter().any(|pair| covers(row, *pair)));

@@ -16,14 +16,13 @@ const DEFAULT_STEPS: u64 = 100_000;
 const PRODUCT_STEPS: u64 = 500;
 
 /// Elements of a kind's product in a push; the environment's `HEXAGEN_WHOLE_PRODUCTS` takes all.
-/// That of FCS-MPC is longer.
 const MOST_OF_A_PRODUCT: usize = 2_500;
 
 /// Steps of each row of the covering arrays.
 const ROW_STEPS: u64 = 4_000;
 
-/// Drives of each library motor and kind, and steps of each of them.
-const SAMPLE: usize = 8;
+/// Drives of each library motor and kind, in a push and in the nightly run, and steps of each of them.
+const SAMPLE: [usize; 2] = [8, 24];
 const SAMPLE_STEPS: u64 = 2_000;
 
 /// Codes of options that exclude each other, and of boards whose legs exclude an option.
@@ -33,6 +32,10 @@ const RULED_OUT: [&str; 4] = [
     "OptionWithoutEffect",
     "UnreadableLeg",
 ];
+
+fn is_whole() -> bool {
+    env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some()
+}
 
 /// Results of many drives.
 #[derive(Debug, Default)]
@@ -172,9 +175,8 @@ fn every_pair_of_option_values() {
 #[test]
 fn full_product_of_options_on_the_paper_motor() {
     let paper = motor(PAPER_MOTOR);
-    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
     for kind in kinds() {
-        let most = if is_whole {
+        let most = if is_whole() {
             usize::MAX
         } else {
             MOST_OF_A_PRODUCT
@@ -212,8 +214,9 @@ fn full_product_of_options_on_the_paper_motor() {
 #[test]
 fn every_library_motor_in_a_sample_of_the_product() {
     let motors = motors();
+    let sample = SAMPLE[usize::from(is_whole())];
     for kind in kinds() {
-        let tally = (0..motors.len() * SAMPLE)
+        let tally = (0..motors.len() * sample)
             .into_par_iter()
             .map(|index| {
                 let motor = &motors[index % motors.len()];

@@ -1,5 +1,5 @@
 //! The runtime's supervisor, alone, equals the bit-true model's supervision, in streams and from
-//! arbitrary states. `cargo xtask mutants --only runtime` counts the faults that this detects.
+//! arbitrary states, in all of its modes and faults.
 
 use hexagen::{Command, Limits, Rest, Sample, Sensors, Supervisor};
 use hexagen_codegen::pipeline::Generated;
@@ -9,6 +9,8 @@ use hexagen_reference::{BitTrue, FormatTable, Mode, Spec, Stop};
 use hexagen_tests::options::{Drive, generate_toml};
 use hexagen_tests::sensors::{SHORT, specification};
 use hexagen_tests::states::States;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Drives that together use everything of a supervisor. Their laws store the last currents.
 const DRIVES: [Drive; 4] = [
@@ -80,7 +82,8 @@ impl Supervised {
         }
     }
 
-    fn assert_equal_in_streams(&self) {
+    /// Tells what the streams reach.
+    fn assert_equal_in_streams(&self) -> Reach {
         let mut stimulus = Stimulus::new(&self.spec, 1).expect("a stimulus");
         let mut pair = Pair::new(self);
         stimulus.restart();
@@ -103,9 +106,11 @@ impl Supervised {
             pair.step(&sample);
             stimulus.respond(pair.command);
         }
+        pair.reach
     }
 
-    fn assert_equal_from_states(&self) {
+    /// Tells the faults to which a step leads.
+    fn assert_equal_from_states(&self) -> BTreeSet<i32> {
         let mut pair = Pair::new(self);
         let names = self.model.state_names();
         let mut states = States::new(&self.spec, &self.generated, &names, 1);
@@ -128,11 +133,26 @@ impl Supervised {
             }
             pair.step(&sample);
         }
+        pair.reach.faults
     }
 }
 
-/// A supervisor and the model that it supervises.
+/// What streams reach.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Reach {
+    /// Words of the modes.
+    modes: BTreeSet<i32>,
+    /// Words of the faults to which a step leads.
+    faults: BTreeSet<i32>,
+    /// Directions that a drive brakes against; 0 if unknown.
+    opposed: BTreeSet<i32>,
+    /// A disturbed Hall code is bridged.
+    bridges: bool,
+}
+
+/// A supervisor, and the model that it is compared with.
 struct Pair {
+    reach: Reach,
     supervisor: Supervisor,
     limits: Limits,
     sensors: Sensors,
@@ -148,6 +168,7 @@ impl Pair {
         let names = drive.model.state_names();
         let place = |name| names.iter().position(|known| *known == name);
         Self {
+            reach: Reach::default(),
             supervisor: Supervisor::new(&drive.limits, &drive.sensors),
             limits: drive.limits,
             sensors: drive.sensors,
@@ -196,10 +217,12 @@ impl Pair {
     #[track_caller]
     fn step(&mut self, sample: &Sample) {
         let (limits, sensors) = (&self.limits, &self.sensors);
+        let before = self.supervisor.words()[1];
         let demanded = self.model.set_point_words()[0];
         let checked = self
             .supervisor
             .check(limits, sensors, sample, || demanded != 0.0);
+        let is_doubtful = checked.is_none();
         let (checked, rest) = match checked {
             Some(checked) => (checked, Rest::Control),
             None => self.supervisor.rest(limits, sensors, sample),
@@ -216,7 +239,9 @@ impl Pair {
         };
         let expected = (!self.model.trace().run).then(|| self.command.state()[0]);
         assert_eq!(legs, expected, "{sample:?}");
+        self.reach.bridges |= rest == Rest::Control && is_doubtful;
         if let Rest::Against(direction) = rest {
+            self.reach.opposed.insert(direction.0);
             // The model demands the largest torque against the direction, or none.
             let demanded = self.model.set_point_words()[0];
             let is_opposed = match direction.0 {
@@ -226,6 +251,10 @@ impl Pair {
             assert!(is_opposed, "{demanded} against {direction:?}");
         }
         let words = self.supervisor.words();
+        self.reach.modes.insert(words[0]);
+        if words[1] != before {
+            self.reach.faults.insert(words[1]);
+        }
         assert_eq!(&self.words[..words.len()], words, "{sample:?}");
         let currents = self.currents.map(|place| self.words[place]);
         assert_eq!([checked.i_a().0, checked.i_b().0], currents, "{sample:?}");
@@ -234,15 +263,31 @@ impl Pair {
 
 #[test]
 fn supervisor_and_model_agree() {
-    let sensors = SENSORS.iter().map(|sensors| {
-        Supervised::of(&specification(
-            &format!("{SHORT}{sensors}"),
-            "kind = \"pdcc\"",
-        ))
+    let of_sensors = SENSORS.iter().map(|sensors| {
+        let inverter = format!("{SHORT}{sensors}");
+        specification(&inverter, "kind = \"pdcc\"")
     });
-    let drives = DRIVES.iter().map(|drive| Supervised::of(&drive.toml(None)));
-    for drive in drives.chain(sensors) {
-        drive.assert_equal_in_streams();
-        drive.assert_equal_from_states();
-    }
+    let drives = DRIVES.iter().map(|drive| drive.toml(None));
+    let drives: Vec<String> = drives.chain(of_sensors).collect();
+    let reached = drives.par_iter().map(|toml| {
+        let drive = Supervised::of(toml);
+        let faults = drive.assert_equal_from_states();
+        let reach = drive.assert_equal_in_streams();
+        let faults = &faults | &reach.faults;
+        Reach { faults, ..reach }
+    });
+    let reach = reached.reduce(Reach::default, |one, other| Reach {
+        modes: &one.modes | &other.modes,
+        faults: &one.faults | &other.faults,
+        opposed: &one.opposed | &other.opposed,
+        bridges: one.bridges || other.bridges,
+    });
+    let all = Reach {
+        modes: (0..=6).collect(),
+        // Without those of the bus, for which a call trips it, and those that a law finds.
+        faults: BTreeSet::from([1, 2, 3, 4, 5, 9]),
+        opposed: BTreeSet::from([-1, 0, 1]),
+        bridges: true,
+    };
+    assert_eq!(reach, all);
 }

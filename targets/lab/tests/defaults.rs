@@ -169,7 +169,7 @@ fn every_library_motor_is_right_by_default() {
 }
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn every_library_motor_is_right_with_an_encoder() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let drives = prepared(&motors).into_iter().map(|drive| {
@@ -181,7 +181,7 @@ fn every_library_motor_is_right_with_an_encoder() {
 
 /// What counts as a limit of the data is one: exact control ripples no more than the drive where that is right.
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn exact_control_ripples_no_more_than_a_drive() {
     let motors = SelectedMotor::library(&PlantOptions::default()).expect("the library");
     let found = prepared(&motors).into_iter().flat_map(|drive| {
@@ -219,16 +219,15 @@ fn every_motor_set_aside_is_right_by_default() {
 }
 
 /// Random motors, in a push and in the nightly run.
-const DRAWN: [usize; 2] = [20, 200];
+const DRAWN: [usize; 2] = [6, 200];
 
-/// Draws whose starts are tried.
+/// Draws whose starts are tried, or as many as there are.
 const STARTED: usize = 20;
 
 /// Nearly all points are right but those that bus, control period or timer limit by the data of motor and inverter: of
 /// the nightly run's 3200 points 30 more are not, of five motors, and 24 of these of two motors whose current a count
 /// of their timer moves by 1.5 % of the rated one. No start fails.
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
 fn random_motors_are_right_by_default() {
     // Motors with an edge timer, and periods short enough for them.
     let drawn = random_drives(0, "pdcc", DRAWN, |drive| can_be_right(&drive.spec));

@@ -220,7 +220,7 @@ fn every_library_motor_holds_its_speed_within_a_percent() {
 }
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn a_long_run_up_at_the_limit_ends_without_overshoot() {
     on_all(&HEAVY, |name, drive, excess| {
         for (limit, load, times) in [(1.0, 0.0, 15.0), (0.5, 0.1, 40.0)] {
@@ -242,7 +242,7 @@ fn a_long_run_up_at_the_limit_ends_without_overshoot() {
 const HELD: f64 = 2.0;
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn a_rotor_that_was_held_starts_again_without_overshoot() {
     on_all(&MOTORS, |name, drive, excess| {
         let mut bench = Bench::at_rest(drive, 1.0, 0.3);
@@ -264,7 +264,7 @@ fn a_rotor_that_was_held_starts_again_without_overshoot() {
 }
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn four_turns_in_the_loops_time_are_enough_and_one_is_not() {
     on_all(&MOTORS, |name, drive, excess| {
         if excess >= RESTLESS {

@@ -277,7 +277,7 @@ fn overshoot(drive: &Prepared, rpm: f64, sign: f64) -> Result<f64, Trip> {
 }
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn a_start_with_the_rated_torque_takes_at_most_half_of_it_more() {
     let motors = library();
     let cases = motors

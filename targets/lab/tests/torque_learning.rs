@@ -152,7 +152,7 @@ fn the_learnt_constant_is_within_a_percent_and_makes_the_torque_asked_for() {
 }
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn a_pi_loop_learns_the_same() {
     study("pi-pwm:torque_learning=on", |_, _, _| {});
 }

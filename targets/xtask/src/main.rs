@@ -28,12 +28,14 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Format, contents of packages, lints, documentation, all tests, and the README's first drive
+    /// Format, contents of packages, lints, documentation, all tests but those that take minutes, the
+    /// README's first drive, and the firmware on emulated cores with its cost
     Test,
-    /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps,
-    /// all products of options, the pages of all motors, `commands`, `programs`, `editors`, the
-    /// installed program, the proofs of all motors and of a thousand random ones; Coq checks the shipped motors' once more;
-    /// then `mutants`, another sample each day
+    /// `test` and `packages`, then bit-for-bit verification of every library motor over many steps; tests
+    /// over all products of options, all planted faults and many random motors; tests that take minutes:
+    /// studies of the library, disturbances in pairs, the pages of all motors, `editors`; a million steps
+    /// of `pil`, `commands`, `programs`, the installed program, the proofs of all motors, which Coq checks
+    /// once more; then `mutants`, another sample each day
     Nightly {
         /// Steps per motor and controller
         #[arg(long, default_value_t = 100_000_000)]

@@ -179,7 +179,7 @@ pub fn faults() -> Step {
 }
 
 /// Tests whose size the environment sets; in a push they are small.
-const SIZED: [&str; 8] = [
+const SIZED: [&str; 9] = [
     "c99",
     "decisions",
     "defaults",
@@ -188,6 +188,7 @@ const SIZED: [&str; 8] = [
     "planted_faults",
     "proofs",
     "regret",
+    "residual",
 ];
 
 /// Steps too long for a push.
@@ -221,7 +222,7 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
     let studies = ["test", "--workspace", "--no-fail-fast", "--", "--ignored"];
     let mut whole = vec!["test", "--workspace", "--no-fail-fast"];
     whole.extend(SIZED.iter().flat_map(|test| ["--test", test]));
-    whole.extend(["--", "--include-ignored", "--nocapture"]);
+    whole.extend(["--", "--nocapture"]);
     Ok(vec![
         packages::pack(true)?,
         step("verification", &verify),
@@ -233,9 +234,9 @@ pub fn long_checks(steps: u64) -> Result<Vec<Step>, String> {
                 ("HEXAGEN_COQ", "1"),
                 ("HEXAGEN_RANDOM_MOTORS", "1000"),
             ],
-            ..step("whole products of options, all faults", &whole)
+            ..step("whole products of options, all faults, many motors", &whole)
         },
-        // Those of editors, too.
+        // The session of `editors` is among them.
         step("studies", &studies),
         on_target("pil", &["--steps", "1000000"]),
         bench("commands", &[]),

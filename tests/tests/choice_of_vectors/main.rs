@@ -657,7 +657,7 @@ const WRONG_RULES: [(&str, &str); 6] = [
 ];
 
 #[test]
-#[ignore = "a study of minutes: `cargo xtask nightly` runs it"]
+#[ignore = "takes minutes: `cargo xtask nightly` runs it"]
 fn a_wrong_rule_is_refuted() {
     for (settings, most, least) in PLANTED {
         let drive = Drive {

@@ -119,6 +119,7 @@ fn the_library_is_listed() {
         (percent / 100.0 * 3.3 / torque - 1.0).abs() < 1e-4,
         "{percent} % {torque} Nm"
     );
+    assert_eq!(LIBRARY.code, 0, "{LIBRARY:?}");
     let table = &LIBRARY.stdout;
     for motor in motors {
         let most = if number(motor, "degrees_per_period") <= 8.0 {

@@ -158,7 +158,7 @@ fn no_command_prints_a_line_of_more_than_a_hundred_columns() {
     let long = ["simulate", PAPER, "--controller", variant, "--rpm", "2900"];
     let verified = ["verify", PAPER, "hoverboard-hub", "--controller", "all"];
     let verified = [&verified[..], &["--steps", "1000"]].concat();
-    let commands: [&[&str]; 17] = [
+    let commands: [&[&str]; 18] = [
         &["simulate", PAPER, "--rpm", "1500"],
         &long,
         &set,
@@ -175,6 +175,7 @@ fn no_command_prints_a_line_of_more_than_a_hundred_columns() {
         &["boards"],
         &["verify", PAPER, "--steps", "1000"],
         &verified,
+        &["advise", "hoverboard-hub"],
         &["explain"],
     ];
     for arguments in commands {
