@@ -1,5 +1,6 @@
 //! Emitted documentation against the program.
 
+use super::datasheet::emit_datasheet;
 use crate::diagnostics::engineering;
 use crate::interface::{FormatEntry, Interface};
 use crate::ir::{Interval, Program};
@@ -21,7 +22,19 @@ const VARIANTS: [&str; 10] = [
 ];
 
 fn drive(variant: &str) -> Generated {
-    let mut ast = parse_toml(include_str!("../example.toml"), "example.toml").expect("TOML");
+    drive_with("", variant)
+}
+
+/// With further fields of the inverter, which replace those of the same name; a name alone removes one.
+fn drive_with(fields: &str, variant: &str) -> Generated {
+    let named = |line: &str, field: &str| line.split(" = ").next() == field.split(" = ").next();
+    let example = include_str!("../example.toml").lines();
+    let kept = example.filter(|line| !fields.lines().any(|field| named(line, field)));
+    let stated = fields.lines().filter(|field| field.contains(" = "));
+    let stated: Vec<&str> = ["[inverter]"].into_iter().chain(stated).collect();
+    let text = kept.collect::<Vec<_>>().join("\n");
+    let text = text.replace("[inverter]", &stated.join("\n"));
+    let mut ast = parse_toml(&text, "example.toml").expect("TOML");
     apply_variant(&mut ast, variant).unwrap_or_else(|errors| panic!("{variant}: {errors}"));
     let (spec, origins) = check(&ast).unwrap_or_else(|errors| panic!("{variant}: {errors}"));
     generate(&spec, &origins).unwrap_or_else(|errors| panic!("{variant}: {errors}"))
@@ -189,5 +202,90 @@ fn errors_of_tables_have_units() {
         let table = tables.find(|known| known.name == table).expect("a table");
         let error = table.doc.last().expect("an error");
         assert!(error.contains(unit), "{error}");
+    }
+}
+
+/// Fields of the inverter, the controller, and what the data sheet says of them.
+const TOLD: [(&str, &str, &str); 17] = [
+    ("over_speed = \"2345 rpm\"", "pdcc", "faster than 2345 rpm."),
+    (
+        "over_speed = \"2345 rpm\"\nhall_timer_clock",
+        "pdcc",
+        "faster than 2345 rpm, where a turn is measured",
+    ),
+    ("stall_timeout = \"123 ms\"", "pdcc", "123 ms"),
+    ("precharge = \"0.45 ms\"", "pdcc", "450 us"),
+    ("calibration_samples = 512", "pdcc", "512"),
+    ("trip_current = \"38.5 A\"", "pdcc", "38.5 A"),
+    ("adc_offset = 2011", "pdcc", "2011"),
+    ("adc_inverted = \"on\"", "pdcc", "fall with the current"),
+    ("sensed_phases = \"bc\"", "pdcc", "phases b and c rise"),
+    (
+        "sensed_phases = \"abc\"\ncurrent_sum_tolerance = \"3.21 A\"\ncurrent_sum_samples = 5",
+        "pdcc",
+        "a sum above 3.21 A in 5 samples in a row",
+    ),
+    ("adc_offset = [2011, 2099]", "pdcc", "from 2099 at zero"),
+    ("max_current = \"21 A\"", "pdcc", "21 A"),
+    ("maximum_speed = \"2777 rpm\"", "pdcc", "2777 rpm"),
+    ("dead_time = \"730 ns\"", "pdcc", "730 ns"),
+    (
+        "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nover_voltage = \"57 V\"\nunder_voltage = \"31 V\"",
+        "pdcc",
+        "57 V",
+    ),
+    (
+        "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nbus_current_limit = \"5.67 A\"",
+        "pdcc",
+        "5.67 A",
+    ),
+    ("", "pdcc:emf=observer,residual_timeout=22 ms", "22 ms"),
+];
+
+#[test]
+fn what_a_specification_states_is_told() {
+    let mut untold = vec![];
+    for (fields, variant, told) in TOLD {
+        let Generated {
+            graph, interface, ..
+        } = drive_with(fields, variant);
+        let sheet = emit_datasheet(&graph, &interface);
+        // Below it the specification itself.
+        let (prose, _) = sheet.split_once("```").expect("a specification");
+        let words: Vec<&str> = prose.split_whitespace().collect();
+        if !words.join(" ").contains(told) {
+            untold.push(format!("{fields}: no `{told}` in {}", words.join(" ")));
+        }
+    }
+    assert!(untold.is_empty(), "{}", untold.join("\n"));
+}
+
+#[test]
+fn the_programs_text_names_the_operands_of_every_value() {
+    for variant in VARIANTS {
+        let graph = drive(variant).graph;
+        let program = graph.program();
+        let text = program.to_string();
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let mut checked = 0;
+        for value in program.step.values() {
+            let node = program.step.node(value);
+            let operands = node.op.operands();
+            let names = operands
+                .iter()
+                .map(|operand| &*program.step.node(*operand).name);
+            let names: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
+            if node.name.is_empty() || names.is_empty() {
+                continue;
+            }
+            checked += 1;
+            let start = format!("{} = ", node.name);
+            let line = lines.iter().find_map(|line| line.strip_prefix(&*start));
+            let line = line.unwrap_or_else(|| panic!("{variant}: no `{start}`"));
+            for name in names {
+                assert!(line.contains(name), "{variant}: no {name} in {start}{line}");
+            }
+        }
+        assert!(checked > 20, "{variant}: {checked} values");
     }
 }

@@ -541,6 +541,14 @@ mod tests {
         assert_eq!(time(None).told().control_cycles, 1234);
         assert_eq!(time(None).percent_of_period(1201), 51.0);
         assert_eq!(time(None).percent_of_period(1200), 50.0);
+        // Beyond the chip's clock its memory takes more wait states.
+        let at = |clock| StepTime {
+            clock,
+            ..time(None)
+        };
+        let bounds = [1.0, 0.5, 1.01].map(|share| at(share * CHIP.clock()).is_bound());
+        assert_eq!(bounds, [true, true, false]);
+        assert!(!time(Some(Times::of([0.1; FIGURES]))).is_bound());
         let with = |any_cycles, errors| StepTime {
             times: Times {
                 any_cycles,
