@@ -213,8 +213,12 @@ const TOLD: [(&str, &str, &str); 17] = [
         "pdcc",
         "faster than 2345 rpm, where a turn is measured",
     ),
-    ("stall_timeout = \"123 ms\"", "pdcc", "123 ms"),
-    ("precharge = \"0.45 ms\"", "pdcc", "450 us"),
+    (
+        "stall_timeout = \"123 ms\"",
+        "pdcc",
+        "after 2460 periods without a Hall edge",
+    ),
+    ("precharge = \"0.45 ms\"", "pdcc", "9 steps of pre-charge"),
     ("calibration_samples = 512", "pdcc", "512"),
     ("trip_current = \"38.5 A\"", "pdcc", "38.5 A"),
     ("adc_offset = 2011", "pdcc", "2011"),
@@ -228,7 +232,11 @@ const TOLD: [(&str, &str, &str); 17] = [
     ("adc_offset = [2011, 2099]", "pdcc", "from 2099 at zero"),
     ("max_current = \"21 A\"", "pdcc", "21 A"),
     ("maximum_speed = \"2777 rpm\"", "pdcc", "2777 rpm"),
-    ("dead_time = \"730 ns\"", "pdcc", "730 ns"),
+    (
+        "dead_time = \"730 ns\"",
+        "pdcc",
+        "365 ns (half the dead time)",
+    ),
     (
         "v_bus = \"measured\"\nbus_adc_bits = 12\nbus_adc_range = \"80 V\"\nover_voltage = \"57 V\"\nunder_voltage = \"31 V\"",
         "pdcc",
@@ -239,7 +247,11 @@ const TOLD: [(&str, &str, &str); 17] = [
         "pdcc",
         "5.67 A",
     ),
-    ("", "pdcc:emf=observer,residual_timeout=22 ms", "22 ms"),
+    (
+        "",
+        "pdcc:emf=observer,residual_timeout=22 ms",
+        "outnumber the others by 440",
+    ),
 ];
 
 #[test]
