@@ -139,3 +139,34 @@ pub(super) fn imports(names: &HashSet<&str>, name: &str) -> Source {
         use ::hexagen::#shared;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tokens(text: &str) -> TokenStream {
+        text.parse().expect("tokens")
+    }
+
+    #[test]
+    fn another_item_of_the_types_name_is_renamed_in_its_own_scope() {
+        let body =
+            "type State = u8; fn f(a: EmittedDrive, b: State, c: other::State) { [State::X] }";
+        let settled = "type State = u8; fn f(a: State, b: HexagenState, c: other::State) { [HexagenState::X] }";
+        let found = settle(tokens(body), "State").to_string();
+        assert_eq!(found, tokens(settled).to_string());
+        // No other item has this name.
+        let found = settle(tokens(body), "HubDrive").to_string();
+        assert_eq!(found, tokens(body).to_string());
+    }
+
+    #[test]
+    fn an_import_of_the_types_name_gets_another() {
+        let names = HashSet::from(["Word", "Legs", "mul_round"]);
+        for (name, import) in [("Legs", "Legs as HexagenLegs"), ("HubDrive", "Legs")] {
+            let found = tokens(&imports(&names, name).to_string()).to_string();
+            let item = tokens(&format!("use ::hexagen::{import};")).to_string();
+            assert!(found.contains(&item), "no {item} in {found}");
+        }
+    }
+}
