@@ -2,6 +2,11 @@
 //! planted faults, proofs over programs and of the model's exactness, and extensions of the
 //! bit-for-bit test: the interpreter as a subject, and arbitrary states.
 
+/// Whether tests have the sizes of the nightly run: the environment's `HEXAGEN_WHOLE_PRODUCTS` is set.
+pub fn is_whole() -> bool {
+    std::env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some()
+}
+
 pub mod cases;
 /// The drives of the covering arrays, from the build script.
 pub mod covering {

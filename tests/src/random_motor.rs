@@ -1,7 +1,7 @@
 //! Plausible motors with a fitting inverter, at random.
 
+use crate::is_whole;
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};
-use std::env;
 
 /// A generator of random numbers that gives the same motors everywhere.
 struct Random(u64);
@@ -88,7 +88,6 @@ pub fn random_drives(
         let text = RandomMotor::new(seed).toml();
         prepare(&MotorSource { name, file, text }, Some(variant)).ok()
     });
-    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
-    let wanted = if is_whole { many } else { few };
+    let wanted = if is_whole() { many } else { few };
     drives.filter(fits).take(wanted).collect()
 }

@@ -3,11 +3,12 @@
 use hexagen_codegen::ir::{Machine, Output, Program};
 use hexagen_tests::covering::SPECIFICATIONS;
 use hexagen_tests::interpreter::{compare, compare_all_set_points, compare_states};
+use hexagen_tests::is_whole;
 use hexagen_tests::library::{Motor, PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::{Kind, Meeting, generate_toml, kind, kinds};
+use hexagen_tests::sensors::assert_graph_is_model;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-use std::env;
 
 /// Steps of the paper's default drive of each kind.
 const DEFAULT_STEPS: u64 = 100_000;
@@ -32,10 +33,6 @@ const RULED_OUT: [&str; 4] = [
     "OptionWithoutEffect",
     "UnreadableLeg",
 ];
-
-fn is_whole() -> bool {
-    env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some()
-}
 
 /// Results of many drives.
 #[derive(Debug, Default)]
@@ -155,18 +152,8 @@ fn default_drive_of_the_paper_motor() {
 
 #[test]
 fn every_pair_of_option_values() {
-    let failures: Vec<String> = SPECIFICATIONS
-        .par_iter()
-        .enumerate()
-        .filter_map(|(seed, row)| {
-            let (_, generated) = generate_toml(row.toml).expect("a row generates");
-            let (program, seed) = (generated.graph.program(), seed as u64);
-            let compared = compare(&generated, program, ROW_STEPS, seed)
-                .and_then(|_| compare_states(&generated, program, ROW_STEPS / 8, seed));
-            compared.err().map(|what| format!("{}\n{what}", row.what))
-        })
-        .collect();
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    let rows = SPECIFICATIONS.par_iter().enumerate();
+    rows.for_each(|(seed, row)| assert_graph_is_model(row.what, row.toml, ROW_STEPS, seed as u64));
 }
 
 /// All combinations of the options that depend on each other, or [`MOST_OF_A_PRODUCT`] of them. The

@@ -449,7 +449,7 @@ impl<'b> RotorWords<'b> {
         self.rev.set(edges.rev);
     }
 
-    /// Joins the intervals of the open guarded stage, and the over-speed's count, and sets their words.
+    /// Joins the intervals and the count of over-speed behind the open guarded stage, and sets their words.
     fn keep_measured(
         &self,
         l: &Lowering<'b>,

@@ -6,6 +6,7 @@ use hexagen_codegen::emit::c99::{RUNTIME, Sources, emit_c99};
 use hexagen_codegen::spec::parse_toml;
 use hexagen_lab::engine::{Prepared, Verifier, prepare_ast};
 use hexagen_tests::covering::{Row, SPECIFICATIONS};
+use hexagen_tests::is_whole;
 use hexagen_tests::library::{PAPER_MOTOR, motor, motors};
 use hexagen_tests::options::kinds;
 use hexagen_tests::sensors;
@@ -20,7 +21,7 @@ const STEPS: u64 = 20_000;
 /// all of them both ways if `HEXAGEN_WHOLE_PRODUCTS` is set.
 const CHECKED: usize = 6;
 
-/// One in so many drives with other sensors is compiled in a push: of each sensors at least one.
+/// One in so many drives with other sensors is compiled in a push: at least one of each set of sensors.
 const SHARE: usize = 2;
 
 /// Makes the compiled code stop at undefined behaviour.
@@ -48,7 +49,7 @@ fn difference(drive: &Prepared, flags: &str, seed: u64) -> Option<String> {
 
 #[test]
 fn emitted_c_is_bit_true() {
-    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
+    let is_whole = is_whole();
     let rows = SPECIFICATIONS.iter().filter(|row| row.is_compiled);
     let rows: Vec<&Row> = rows.collect();
     let failures: Vec<String> = rows
@@ -74,9 +75,8 @@ fn emitted_c_is_bit_true() {
 
 #[test]
 fn emitted_c_of_other_sensors_is_bit_true() {
-    let is_whole = env::var_os("HEXAGEN_WHOLE_PRODUCTS").is_some();
     let mut drives = sensors::drives();
-    if !is_whole {
+    if !is_whole() {
         drives = drives.into_iter().step_by(SHARE).collect();
     }
     let failures: Vec<String> = drives

@@ -31,7 +31,7 @@ fn a_result_that_cannot_be_written_is_an_error() {
 #[test]
 fn messages_that_cannot_be_written_change_nothing() {
     let full = || fs::File::create("/dev/full").expect("Linux has it");
-    // Of it `check` has warnings.
+    // `check` warns of this motor.
     let noted = ["check", "br2804-1700kv"];
     let said = run(noted);
     assert_ne!(said.stderr, "");
