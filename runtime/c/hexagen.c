@@ -170,7 +170,8 @@ void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits)
     start(supervisor, limits);
 }
 
-void hexagen_trip(hexagen_supervisor *supervisor, hexagen_fault fault)
+/** Turns all legs off until a reset. The first fault is kept. */
+static void trip(hexagen_supervisor *supervisor, hexagen_fault fault)
 {
     if (supervisor->mode != HEXAGEN_MODE_TRIPPED) {
         supervisor->fault = fault;
@@ -199,7 +200,7 @@ static void end_calibration(hexagen_supervisor *supervisor, const hexagen_limits
     const bool has_third = limits->third.is_there;
     if (is_bad_offset(limits, 0, supervisor->sum[0]) || is_bad_offset(limits, 1, supervisor->sum[1])
         || (has_third && is_bad_offset(limits, 2, supervisor->sum[2]))) {
-        hexagen_trip(supervisor, HEXAGEN_FAULT_OFFSET);
+        trip(supervisor, HEXAGEN_FAULT_OFFSET);
         return;
     }
     supervisor->offset[0] = mean(limits, supervisor->sum[0]);
@@ -221,21 +222,29 @@ static bool is_last(hexagen_supervisor *supervisor)
     return supervisor->countdown == 0U;
 }
 
+/** Adds the count of a calibration sample. */
+static void add_count(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample, uint16_t sensor)
+{
+    /* The countdown ends the sums before this limit, whatever the initial state. */
+    const int32_t most = hexagen_shift_left((int32_t)limits->adc_max, limits->calibration_log2);
+    const int32_t count = (int32_t)hexagen_count_within(limits, sample, sensor);
+    supervisor->sum[sensor] = hexagen_min(supervisor->sum[sensor] + count, most);
+}
+
 /**
  * Calibration averages the counts of all its samples; then pre-charge counts its periods down, and
  * the start follows.
  */
 static void start_up(
-    hexagen_supervisor *supervisor, const hexagen_limits *limits, const uint16_t *counts)
+    hexagen_supervisor *supervisor, const hexagen_limits *limits, const hexagen_sample *sample)
 {
-    /* The countdown ends the sums before this limit, whatever the initial state. */
-    const int32_t most = hexagen_shift_left((int32_t)limits->adc_max, limits->calibration_log2);
     switch (supervisor->mode) {
     case HEXAGEN_MODE_CALIBRATE:
-        supervisor->sum[0] = hexagen_min(supervisor->sum[0] + (int32_t)counts[0], most);
-        supervisor->sum[1] = hexagen_min(supervisor->sum[1] + (int32_t)counts[1], most);
+        add_count(supervisor, limits, sample, 0);
+        add_count(supervisor, limits, sample, 1);
         if (limits->third.is_there) {
-            supervisor->sum[2] = hexagen_min(supervisor->sum[2] + (int32_t)counts[2], most);
+            add_count(supervisor, limits, sample, 2);
         }
         if (is_last(supervisor)) {
             end_calibration(supervisor, limits);
@@ -363,24 +372,12 @@ static void follow(hexagen_supervisor *supervisor, const hexagen_limits *limits,
 }
 
 /**
- * Shorts a slow rotor through the lower switches, and asks for torque against a fast one; behind an
- * interrupted start.
+ * Whether braking asks for torque against a rotor, a fast one; a slow one is shorted through the lower
+ * switches, and an interrupted start goes on first.
  */
-static hexagen_rested go_on_braking(
-    const hexagen_supervisor *supervisor, const hexagen_limits *limits)
+static bool is_against(const hexagen_supervisor *supervisor, const hexagen_limits *limits)
 {
-    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
-    if (supervisor->countdown != 0U) {
-        return rested;
-    }
-    if (is_slow(supervisor, limits)) {
-        rested.leg = HEXAGEN_LEG_LOW;
-    } else {
-        rested.is_controlled = true;
-        rested.is_braking = true;
-        rested.against = (supervisor->turn_interval == 0) ? 0 : supervisor->turn_direction;
-    }
-    return rested;
+    return supervisor->countdown == 0U && !is_slow(supervisor, limits);
 }
 
 static int32_t current_within(const hexagen_limits *limits, int32_t current)
@@ -388,11 +385,9 @@ static int32_t current_within(const hexagen_limits *limits, int32_t current)
     return hexagen_clamp(current, limits->current_least, limits->current_most);
 }
 
-static hexagen_rested go_without(hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    const hexagen_sample *sample, hexagen_checked *checked)
+hexagen_unfit hexagen_examine(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample, hexagen_fault known, hexagen_checked *checked)
 {
-    const uint16_t counts[3] = { hexagen_count_within(limits, sample, 0),
-        hexagen_count_within(limits, sample, 1), hexagen_count_within(limits, sample, 2) };
     int32_t first;
     int32_t second;
     const uint16_t sampled = hexagen_hall_of(limits, sample);
@@ -401,44 +396,54 @@ static hexagen_rested go_without(hexagen_supervisor *supervisor, const hexagen_l
     const uint16_t hall = is_bridged      ? supervisor->hall_prev
         : hexagen_is_hall_code(sampled) ? sampled
                                         : 0U;
-    hexagen_rested rested = { HEXAGEN_LEG_OFF, false, false, 0 };
-    hexagen_fault fault;
-    hexagen_sense(supervisor, limits, counts[0], counts[1], counts[2], &first, &second);
+    hexagen_unfit unfit = { false, false, 0, known };
+    hexagen_sense(supervisor, limits, hexagen_count_within(limits, sample, 0),
+        hexagen_count_within(limits, sample, 1), hexagen_count_within(limits, sample, 2), &first,
+        &second);
     hexagen_take_currents(limits, checked, first, second, hexagen_third(first, second));
     checked->i_a = current_within(limits, checked->i_a);
     checked->i_b = current_within(limits, checked->i_b);
     checked->hall = (int32_t)hall;
     checked->hall_ticks = (int32_t)sample->hall_ticks;
     checked->angle = hexagen_wrap(sample->angle);
-    fault = find_fault(supervisor, limits, sample, is_sound || is_bridged, first, second);
-    if (fault != HEXAGEN_FAULT_NONE) {
-        hexagen_trip(supervisor, fault);
-        return rested;
+    if (known == HEXAGEN_FAULT_NONE) {
+        unfit.fault
+            = find_fault(supervisor, limits, sample, is_sound || is_bridged, first, second);
+    }
+    if (unfit.fault != HEXAGEN_FAULT_NONE) {
+        return unfit;
     }
     if (supervisor->mode == HEXAGEN_MODE_START || supervisor->mode == HEXAGEN_MODE_COAST
         || supervisor->mode == HEXAGEN_MODE_BRAKE) {
         follow(supervisor, limits, hall);
     }
     if (supervisor->mode == HEXAGEN_MODE_RUN) {
-        rested.is_controlled = is_bridged;
-    } else if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {
-        rested.leg = HEXAGEN_LEG_LOW;
-    } else if (supervisor->mode == HEXAGEN_MODE_BRAKE) {
-        rested = go_on_braking(supervisor, limits);
+        unfit.is_controlled = is_bridged;
+    } else if (supervisor->mode == HEXAGEN_MODE_BRAKE && is_against(supervisor, limits)) {
+        unfit.is_controlled = true;
+        unfit.is_braking = true;
+        unfit.against = (supervisor->turn_interval == 0) ? 0 : supervisor->turn_direction;
     }
-    start_up(supervisor, limits, counts);
-    return rested;
+    return unfit;
 }
 
-hexagen_rested hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
-    const hexagen_sample *sample, hexagen_checked *checked)
+hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *limits,
+    const hexagen_sample *sample, hexagen_fault fault)
 {
-    const hexagen_rested rested = go_without(supervisor, limits, sample, checked);
-    if (!rested.is_controlled) {
-        const hexagen_legs legs = hexagen_all_legs(rested.leg);
-        hexagen_follow_legs(supervisor, limits, &legs);
+    hexagen_leg leg = HEXAGEN_LEG_OFF;
+    hexagen_legs legs;
+    if (fault != HEXAGEN_FAULT_NONE) {
+        trip(supervisor, fault);
+    } else {
+        if (supervisor->mode == HEXAGEN_MODE_PRECHARGE
+            || (supervisor->mode == HEXAGEN_MODE_BRAKE && supervisor->countdown == 0U)) {
+            leg = HEXAGEN_LEG_LOW;
+        }
+        start_up(supervisor, limits, sample);
     }
-    return rested;
+    legs = hexagen_all_legs(leg);
+    hexagen_follow_legs(supervisor, limits, &legs);
+    return leg;
 }
 
 /**

@@ -759,7 +759,7 @@ typedef struct {
 } hexagen_supervisor;
 
 /**
- * A sample that has passed the supervisor: the input of a law. Only hexagen_check and hexagen_rest
+ * A sample that has passed the supervisor: the input of a law. Only hexagen_check and hexagen_examine
  * make one; its currents lie within `current_least` and `current_most` of the limits.
  */
 typedef struct {
@@ -781,7 +781,9 @@ static inline uint16_t hexagen_count(
     const uint16_t first = (limits->sensed == HEXAGEN_SENSED_AB) ? 0U
         : (limits->sensed == HEXAGEN_SENSED_BC)                  ? 1U
                                                                  : 2U;
-    return sample->adc[(first + sensor) % 3U];
+    const uint16_t place = (uint16_t)(first + sensor);
+    /* A remainder would be a division, which small cores do not have. */
+    return sample->adc[(place < 3U) ? place : place - 3U];
 }
 
 /** The same, clamped to the ADC's range. */
@@ -1001,9 +1003,8 @@ static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hex
 }
 
 /**
- * Whether the period is controlled, with the checked sample. False if the drive rests in this
- * period: it is starting up or tripped, or the sample has a fault; then call hexagen_rest with the
- * same sample. `set_point` is 0 if no current is demanded.
+ * Whether the period is fit for control, with the checked sample. False if the drive is starting up,
+ * off on purpose or tripped, or the sample has a fault; then call hexagen_examine with the same sample. `set_point` is 0 if no current is demanded.
  */
 static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, const volatile int32_t *set_point, hexagen_checked *checked)
@@ -1030,44 +1031,36 @@ static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_l
  */
 void hexagen_start(hexagen_supervisor *supervisor, const hexagen_limits *limits);
 
-/** What a drive does in a period that passes no check. */
+/** What a drive does in a period that is not fit for control. */
 typedef struct {
-    /** The state of all legs, unless the period is one of control. */
-    hexagen_leg leg;
     /** The period is one of control after all: a disturbed Hall code is bridged, or it brakes. */
     bool is_controlled;
     /** It brakes a fast rotor: control with the largest torque against its direction. */
     bool is_braking;
     /** 1 forward, -1 backward; 0 while it is unknown: control at set-point 0. */
     int32_t against;
-} hexagen_rested;
+    /** It rests for this fault, the first that was found; or without one. */
+    hexagen_fault fault;
+} hexagen_unfit;
 
 /**
- * A period without control, after hexagen_check returned false: continues start-up, trips on a
- * fault, bridges a disturbed Hall code, brakes, and returns what the drive does instead. In the
- * checked sample, counts are clamped to the ADC's range, the current of a phase that is not read to
- * that of one that is; a Hall code that is bridged is the last one, and another that no sensors
- * give is 0.
+ * What the drive does in a period that is not fit for control: hexagen_check returned false, or a
+ * fault is `known` already, which no sample shows. Bridges a disturbed Hall code, brakes, or says that
+ * it rests; then call hexagen_rest. In the checked sample, counts are clamped to the ADC's range, the
+ * current of a phase that is not read to that of one that is; a Hall code that is bridged is the last
+ * one, and another that no sensors give is 0.
  */
-HEXAGEN_COLD hexagen_rested hexagen_rest(hexagen_supervisor *supervisor,
-    const hexagen_limits *limits, const hexagen_sample *sample, hexagen_checked *checked);
+HEXAGEN_COLD hexagen_unfit hexagen_examine(hexagen_supervisor *supervisor,
+    const hexagen_limits *limits, const hexagen_sample *sample, hexagen_fault known,
+    hexagen_checked *checked);
 
-/** The period of a drive that rests, or what it goes on to control with. */
-typedef struct {
-    bool is_controlled;
-    hexagen_checked checked;
-    hexagen_legs legs;
-} hexagen_period;
-
-/** What comes of a period that passed no check. */
-static inline hexagen_period hexagen_period_of(hexagen_rested rested, hexagen_checked checked)
-{
-    hexagen_period period;
-    period.is_controlled = rested.is_controlled;
-    period.checked = checked;
-    period.legs = hexagen_all_legs(rested.leg);
-    return period;
-}
+/**
+ * A period without control, which hexagen_examine found to be one: trips on the fault, or continues
+ * start-up; the state of all legs. It is apart, so that no way leads from a trip or a start-up to
+ * control, and the longest computation time is that of one of them.
+ */
+HEXAGEN_COLD hexagen_leg hexagen_rest(hexagen_supervisor *supervisor,
+    const hexagen_limits *limits, const hexagen_sample *sample, hexagen_fault fault);
 
 /**
  * Clears a trip; keeps calibrated offsets. False, without effect, during calibration and
@@ -1103,9 +1096,6 @@ void hexagen_brake(hexagen_supervisor *supervisor);
  * the drive does neither.
  */
 bool hexagen_resume(hexagen_supervisor *supervisor);
-
-/** Turns all legs off until a reset, for a fault that a sample does not show. The first is kept. */
-void hexagen_trip(hexagen_supervisor *supervisor, hexagen_fault fault);
 
 /** Count of bridged samples at which counting ends. */
 #define HEXAGEN_MOST_GLITCHES 0x7fffU

@@ -5,10 +5,11 @@ use crate::bus::Bus;
 use crate::set_point::debug;
 use crate::trip::Trip;
 use crate::{
-    Checked, Command, Control, Fault, LegState, Legs, Observation, Rest, Sample, SetPoint, State,
-    Status, Supervisor,
+    Checked, Command, Control, Fault, Legs, Observation, Sample, SetPoint, State, Status,
+    Supervisor, Unfit,
 };
 use core::fmt;
+use core::hint::black_box;
 use core::ops::Deref;
 use fixed::types::I16F16;
 
@@ -201,9 +202,7 @@ impl<C: Control> ControlLoop<'_, C> {
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> C::Command {
         let Self { set_point, core } = self;
-        if let Some(fault) = unsampled_fault(set_point, &core.law) {
-            trip(set_point, core, *sample, fault);
-        }
+        let fault = unsampled_fault(set_point, &core.law);
         let is_demanded = || set_point.is_demanded();
         let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
         let resolved;
@@ -216,13 +215,13 @@ impl<C: Control> ControlLoop<'_, C> {
             }
         };
         let checked = core.supervisor.check(limits, sensors, seen, is_demanded);
-        let checked = if let Some(checked) = checked {
+        let checked = if let (Some(checked), None) = (checked, fault) {
             C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen))
         } else {
-            let unfit = rest(set_point, core, *sample);
-            match unfit.rest {
-                Rest::Control | Rest::Against(_) => unfit.checked,
-                Rest::Legs(state) => return at_rest(set_point, core, &unfit, state),
+            let examined = examine(set_point, core, *sample, fault);
+            match examined.unfit {
+                Unfit::Control | Unfit::Against(_) => examined.checked,
+                Unfit::Rest(fault) => return rest(set_point, core, &examined, fault),
             }
         };
         let rotor = C::track(&mut core.law, &checked);
@@ -349,21 +348,25 @@ fn unsampled_fault<C: Control>(set_point: &SetPoint<C>, law: &C::State) -> Optio
     }
 }
 
-/// A period that does not pass the check.
-struct Unfit {
+/// A period that is not fit for control.
+struct Examined {
     sample: Sample,
     checked: Checked,
-    rest: Rest,
-    was_tripped: bool,
+    unfit: Unfit,
 }
 
-/// Asks the supervisor about a period that does not pass its check. The drive rests in start-up, with
-/// a fault or off on purpose. It controls nevertheless to brake a fast rotor, and where a disturbed
-/// Hall code is bridged. The sample is passed by value, so that only this path stores it.
+/// Asks the supervisor about a period that is not fit for control. The drive controls nevertheless to
+/// brake a fast rotor, and where a disturbed Hall code is bridged.
 #[cold]
 #[inline(never)]
-fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample) -> Unfit {
-    let was_tripped = core.supervisor.fault().is_some();
+fn examine<C: Control>(
+    set_point: &SetPoint<C>,
+    core: &mut Core<C>,
+    sample: Sample,
+    fault: Option<Fault>,
+) -> Examined {
+    // The sample is passed by value and its address is used, so that no other path has to store it.
+    black_box(&sample);
     let resolved;
     let seen = match C::ANGLE {
         None => &sample,
@@ -372,41 +375,46 @@ fn rest<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample)
             &resolved
         }
     };
-    let (checked, rest) = core.supervisor.rest(&C::LIMITS, &C::SENSORS, seen);
+    let (limits, sensors) = (&C::LIMITS, &C::SENSORS);
+    let (checked, unfit) = core.supervisor.examine(limits, sensors, seen, fault);
     let checked = C::ANGLE.map_or(checked, |_| checked.with_angle_of(seen));
-    match rest {
+    match unfit {
         // A trip is kept before it is published.
-        Rest::Legs(_) => {}
-        Rest::Control => publish(set_point, core),
-        Rest::Against(direction) => {
+        Unfit::Rest(_) => {}
+        Unfit::Control => publish(set_point, core),
+        Unfit::Against(direction) => {
             publish(set_point, core);
             set_point.oppose(direction);
         }
     }
-    Unfit {
+    Examined {
         sample,
         checked,
-        rest,
-        was_tripped,
+        unfit,
     }
 }
 
-/// A period with all legs in one state. It is apart from [`rest`], so that no way leads from here to
-/// control.
+/// A period with all legs in one state: in start-up, with a fault or off on purpose. It is apart from
+/// [`examine`], so that no way leads from here to control.
 #[cold]
 #[inline(never)]
-fn at_rest<C: Control>(
+fn rest<C: Control>(
     set_point: &SetPoint<C>,
     core: &mut Core<C>,
-    unfit: &Unfit,
-    state: LegState,
+    examined: &Examined,
+    fault: Option<Fault>,
 ) -> C::Command {
-    if let (false, Some(fault)) = (unfit.was_tripped, core.supervisor.fault()) {
-        keep(set_point, core, unfit.sample, fault);
+    let Examined {
+        sample, checked, ..
+    } = examined;
+    let supervisor = &mut core.supervisor;
+    let (state, tripped) = supervisor.rest(&C::LIMITS, &C::SENSORS, sample, fault);
+    if let Some(fault) = tripped {
+        keep(set_point, core, *sample, fault);
     }
     publish(set_point, core);
-    let rotor = C::track(&mut core.law, &unfit.checked);
-    C::rest(&mut core.law, &unfit.checked, rotor);
+    let rotor = C::track(&mut core.law, checked);
+    C::rest(&mut core.law, checked, rotor);
     publish_torque(set_point, &core.law);
     C::Command::at_rest(state)
 }
@@ -421,16 +429,6 @@ fn publish<C: Control>(set_point: &SetPoint<C>, core: &Core<C>) {
 fn publish_torque<C: Control>(set_point: &SetPoint<C>, law: &C::State) {
     if let Some(ratio) = C::TORQUE_RATIO {
         set_point.torque_ratio.store(ratio(law));
-    }
-}
-
-/// Trips a drive, unless it is tripped already, for what its sample does not show.
-#[cold]
-#[inline(never)]
-fn trip<C: Control>(set_point: &SetPoint<C>, core: &mut Core<C>, sample: Sample, fault: Fault) {
-    if core.supervisor.fault().is_none() {
-        core.supervisor.trip(fault);
-        keep(set_point, core, sample, fault);
     }
 }
 

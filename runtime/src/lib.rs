@@ -68,5 +68,5 @@ pub use set_point::SetPoint;
 #[cfg(feature = "signals")]
 pub use signals::Signals;
 pub use status::{Fault, Mode, Status};
-pub use supervisor::{Limits, Rest, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor};
+pub use supervisor::{Limits, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor, Unfit};
 pub use trip::{Places, Trip};

@@ -396,8 +396,8 @@ const fn is_hall_code(hall: u8) -> bool {
 
 /// The supervisor of a drive: mode, first fault, offsets of the current ADCs.
 ///
-/// Each control period is either [`check`](Self::check)ed and controlled, or handled by
-/// [`rest`](Self::rest).
+/// Each control period is [`check`](Self::check)ed and controlled, or [`examine`](Self::examine)d; that
+/// period is controlled after all, or handled by [`rest`](Self::rest).
 ///
 /// # Start-up
 ///
@@ -578,10 +578,10 @@ pub(crate) const MOST_GLITCHES: u16 = 0x7fff;
 
 /// What a drive does in a period that passes no check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
-    /// All legs are in one state.
-    Legs(LegState),
-    /// Control after all: the sample's disturbed Hall code is bridged.
+pub enum Unfit {
+    /// It rests, all legs in one state; the first fault that was found.
+    Rest(Option<Fault>),
+    /// It controls after all: the sample's disturbed Hall code is bridged.
     Control,
     /// It brakes a fast rotor: control with the largest torque against this direction, 1 forward or
     /// -1 backward; at set-point 0 while the direction is unknown, 0.
@@ -642,9 +642,9 @@ impl Supervisor {
         }
     }
 
-    /// The sample for a controlled period; `None` if the drive rests in this period: it is starting
-    /// up or tripped, or the sample has a fault. Then call [`rest`](Self::rest) with the same
-    /// sample. `is_demanded` tells whether the set-point is not 0.
+    /// The sample for a controlled period; `None` if the drive is starting up, off on purpose or
+    /// tripped, or the sample has a fault. Then call [`examine`](Self::examine) with the same sample.
+    /// `is_demanded` tells whether the set-point is not 0.
     #[inline]
     #[must_use]
     pub fn check(
@@ -799,31 +799,22 @@ impl Supervisor {
         limits.stall_periods != 0 && self.stall_count == limits.stall_periods
     }
 
-    /// A period without control, after a [`check`](Self::check) that gave no sample: continues
-    /// start-up, trips on a fault, bridges a disturbed Hall code, brakes, and returns what the drive
-    /// does instead. In the sample, counts are clamped to the ADC's range, the current of a phase
-    /// that is not read to that of one that is; a Hall code that is bridged is the last one, and
-    /// another that no sensors give is 0.
-    pub fn rest(&mut self, limits: &Limits, sensors: &Sensors, sample: &Sample) -> (Checked, Rest) {
-        let (checked, rest) = self.go_without(limits, sensors, sample);
-        if let Rest::Legs(state) = rest {
-            let on = if state == LegState::Off {
-                None
-            } else {
-                Some(0)
-            };
-            self.follow_command(sensors, [on; 3]);
-        }
-        (checked, rest)
-    }
-
-    #[inline]
-    fn go_without(
+    /// What the drive does in a period that is not fit for control: one whose [`check`](Self::check)
+    /// gave no sample, or with the fault `known` already, which no sample shows. Bridges a disturbed Hall
+    /// code, brakes, or says that it rests; then call [`rest`](Self::rest) with the fault. In the sample,
+    /// counts are clamped to the ADC's range, the current of a phase that is not read to that of one that
+    /// is; a Hall code that is bridged is the last one, and another that no sensors give is 0.
+    ///
+    /// It is apart from [`rest`](Self::rest), so that no way leads from a trip or a start-up to control,
+    /// and the longest computation time is that of one of them.
+    #[inline(always)]
+    pub fn examine(
         &mut self,
         limits: &Limits,
         sensors: &Sensors,
         sample: &Sample,
-    ) -> (Checked, Rest) {
+        known: Option<Fault>,
+    ) -> (Checked, Unfit) {
         let adc = sensors.phases.of(sample.adc);
         let counts = limits.within_range(adc);
         let i = self.sensed(limits, sensors, counts);
@@ -846,7 +837,9 @@ impl Supervisor {
             timing: sample.hall_ticks.into(),
         };
         let [first, second, third] = adc;
-        let found = if self.is_at_end(limits, sensors, Unread::First, first)
+        let found = if known.is_some() {
+            known
+        } else if self.is_at_end(limits, sensors, Unread::First, first)
             || self.is_at_end(limits, sensors, Unread::Second, second)
             || self.is_at_end(limits, sensors, Unread::Third, third)
         {
@@ -862,21 +855,45 @@ impl Supervisor {
         } else {
             None
         };
-        if let Some(fault) = found {
-            self.trip(fault);
-            return (checked, Rest::Legs(LegState::Off));
+        if found.is_some() {
+            return (checked, Unfit::Rest(found));
         }
         if matches!(self.mode, Mode::Start | Mode::Coast | Mode::Brake) {
             self.follow(limits, hall);
         }
-        let rest = match self.mode {
-            Mode::Run if is_bridged => Rest::Control,
-            Mode::Precharge => Rest::Legs(LegState::Low),
-            Mode::Brake => self.go_on_braking(limits),
-            _ => Rest::Legs(LegState::Off),
+        let unfit = match self.mode {
+            Mode::Run if is_bridged => Unfit::Control,
+            Mode::Brake if self.is_against(limits) => Unfit::Against(self.turn.known_direction()),
+            _ => Unfit::Rest(None),
         };
-        self.start_up(limits, sensors, counts);
-        (checked, rest)
+        (checked, unfit)
+    }
+
+    /// A period without control, which [`examine`](Self::examine) found to be one: trips on the fault, or
+    /// continues start-up. Returns the state of all legs, and what trips the drive in this period.
+    #[inline(always)]
+    pub fn rest(
+        &mut self,
+        limits: &Limits,
+        sensors: &Sensors,
+        sample: &Sample,
+        fault: Option<Fault>,
+    ) -> (LegState, Option<Fault>) {
+        let (state, tripped) = if let Some(fault) = fault {
+            (LegState::Off, self.trip(fault))
+        } else {
+            let is_braking = self.mode == Mode::Brake && self.countdown == 0;
+            let is_low = self.mode == Mode::Precharge || is_braking;
+            let tripped = self.start_up(limits, sensors, sensors.phases.of(sample.adc));
+            let state = if is_low { LegState::Low } else { LegState::Off };
+            (state, tripped)
+        };
+        let on = match state {
+            LegState::Off => None,
+            _ => Some(0),
+        };
+        self.follow_command(sensors, [on; 3]);
+        (state, tripped)
     }
 
     /// Takes a sample with a disturbed Hall code as one more of a gap; false if the gap is too long, or
@@ -901,14 +918,14 @@ impl Supervisor {
     }
 
     /// Calibration averages the counts of all its samples; then pre-charge counts its periods down,
-    /// and the start follows.
-    fn start_up(&mut self, limits: &Limits, sensors: &Sensors, counts: [Word; 3]) {
+    /// and the start follows. Returns what trips the drive.
+    #[inline(always)]
+    fn start_up(&mut self, limits: &Limits, sensors: &Sensors, adc: [u16; 3]) -> Option<Fault> {
         match self.mode {
-            Mode::Run | Mode::Tripped | Mode::Coast | Mode::Brake => {}
             Mode::Start => self.mode = before_control(self.countdown),
             Mode::Calibrate => {
                 let most = Word::from(limits.adc_max) << limits.calibration_log2;
-                let ([sum_a, sum_b, sum_c], [a, b, c]) = (self.sums, counts);
+                let ([sum_a, sum_b, sum_c], [a, b, c]) = (self.sums, limits.within_range(adc));
                 // The countdown ends the sums before this limit, whatever the initial state.
                 let third = match sensors.third {
                     None => Word(0),
@@ -917,7 +934,7 @@ impl Supervisor {
                 self.sums = [(sum_a + a).min(most), (sum_b + b).min(most), third];
                 self.countdown = self.countdown.saturating_sub(1);
                 if self.countdown == 0 {
-                    self.end_calibration(limits, sensors);
+                    return self.end_calibration(limits, sensors);
                 }
             }
             Mode::Precharge => {
@@ -926,7 +943,9 @@ impl Supervisor {
                     self.start(limits);
                 }
             }
+            _ => {}
         }
+        None
     }
 
     /// Control follows, once the rotor's angle is known.
@@ -936,19 +955,13 @@ impl Supervisor {
         self.turn = Turn::UNKNOWN;
     }
 
-    /// Shorts a slow rotor through the lower switches, and asks for torque against a fast one; behind
-    /// an interrupted start.
-    fn go_on_braking(&self, limits: &Limits) -> Rest {
-        if self.countdown != 0 {
-            Rest::Legs(LegState::Off)
-        } else if self.turn.is_slow(limits) {
-            Rest::Legs(LegState::Low)
-        } else {
-            Rest::Against(self.turn.known_direction())
-        }
+    /// Whether braking asks for torque against a rotor, a fast one; a slow one is shorted through the
+    /// lower switches, and an interrupted start goes on first.
+    fn is_against(&self, limits: &Limits) -> bool {
+        self.countdown == 0 && !self.turn.is_slow(limits)
     }
 
-    fn end_calibration(&mut self, limits: &Limits, sensors: &Sensors) {
+    fn end_calibration(&mut self, limits: &Limits, sensors: &Sensors) -> Option<Fault> {
         let is_bad = |sensor: Sensor, sum: Word| {
             let [least, most] = sensor
                 .offsets
@@ -958,8 +971,7 @@ impl Supervisor {
         let ([first, second, third], [sum_a, sum_b, sum_c]) = (sensors.all(limits), self.sums);
         let is_third_bad = sensors.third.is_some() && is_bad(third, sum_c);
         if is_bad(first, sum_a) || is_bad(second, sum_b) || is_third_bad {
-            self.trip(Fault::Offset);
-            return;
+            return self.trip(Fault::Offset);
         }
         // The mean in words of current, rounded down.
         let (bits, log2) = (limits.current_bits, limits.calibration_log2);
@@ -976,15 +988,17 @@ impl Supervisor {
         if limits.precharge_periods == 0 {
             self.start(limits);
         }
+        None
     }
 
-    /// Turns all legs off until a reset, for a fault that a sample does not show. The first fault is
-    /// kept.
-    pub fn trip(&mut self, fault: Fault) {
-        if self.mode != Mode::Tripped {
-            self.fault = Some(fault);
+    /// Turns all legs off until a reset. Returns the fault, if it is the first, which is kept.
+    fn trip(&mut self, fault: Fault) -> Option<Fault> {
+        if self.mode == Mode::Tripped {
+            return None;
         }
         self.mode = Mode::Tripped;
+        self.fault = Some(fault);
+        self.fault
     }
 
     /// Whether control is on, to begin next, or off on purpose: neither calibrating nor pre-charging,
@@ -1066,12 +1080,6 @@ impl Supervisor {
     #[must_use]
     pub const fn status(&self) -> Status {
         Status::from_bits(self.status_bits(), false)
-    }
-
-    /// What tripped the drive.
-    #[inline]
-    pub(crate) const fn fault(&self) -> Option<Fault> {
-        self.fault
     }
 
     #[inline]

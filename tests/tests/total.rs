@@ -10,7 +10,7 @@ use hexagen::fixed::types::{I8F24, I16F16};
 use hexagen::{
     Bus, Command, Control, Drive, DynLoop, Fault, FixedBus, Format, Intervals, LegState, Legs,
     Limits, Mode, Rounding, Sample, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor,
-    ToldBus,
+    ToldBus, Unfit,
 };
 use proptest::prelude::*;
 use std::hint::black_box;
@@ -338,7 +338,11 @@ proptest! {
         supervisor.set_words(words);
         for (sample, is_demanded, call) in samples {
             if supervisor.check(&limits, &sensors, &sample, || is_demanded).is_none() {
-                black_box(supervisor.rest(&limits, &sensors, &sample));
+                let known = (call == 6).then_some(Fault::OverSpeed);
+                let (_, unfit) = black_box(supervisor.examine(&limits, &sensors, &sample, known));
+                if let Unfit::Rest(fault) = unfit {
+                    black_box(supervisor.rest(&limits, &sensors, &sample, fault));
+                }
             } else {
                 let [a, b, c] = sample.adc();
                 supervisor.follow_command(&sensors, [Some(a), Some(b), (c != 0).then_some(c)]);

@@ -119,7 +119,9 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
         const uint16_t b = (counts[1] < most) ? counts[1] : most;
         const int64_t low = limits->current_least, high = limits->current_most;
         int64_t third;
-        const hexagen_rested rested = hexagen_rest(&supervisor, limits, &sample, &checked);
+        const hexagen_unfit unfit
+            = hexagen_examine(&supervisor, limits, &sample, HEXAGEN_FAULT_NONE, &checked);
+        const hexagen_leg leg = hexagen_rest(&supervisor, limits, &sample, unfit.fault);
         const bool charges = mode == HEXAGEN_MODE_PRECHARGE && fault == HEXAGEN_FAULT_NONE;
         i[places[0]] = current(limits, 0, a, offset_a);
         i[places[1]] = current(limits, 1, b, offset_b);
@@ -128,7 +130,8 @@ static int try(const hexagen_limits *limits, hexagen_sample sample, uint16_t off
         EXPECT(checked.i_a == i[0]);
         EXPECT(checked.i_b == i[1]);
         EXPECT(checked.hall == ((sample.hall >= 1 && sample.hall <= 6) ? sample.hall : 0));
-        EXPECT(rested.leg == (charges ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF));
+        EXPECT(!unfit.is_controlled && unfit.fault == fault);
+        EXPECT(leg == (charges ? HEXAGEN_LEG_LOW : HEXAGEN_LEG_OFF));
         EXPECT(supervisor.fault == ((mode == HEXAGEN_MODE_TRIPPED) ? HEXAGEN_FAULT_NONE : fault));
         EXPECT((supervisor.mode == HEXAGEN_MODE_TRIPPED)
             == (mode == HEXAGEN_MODE_TRIPPED || fault != HEXAGEN_FAULT_NONE));
@@ -155,11 +158,13 @@ static int rests(hexagen_supervisor *supervisor, const hexagen_limits *limits, u
     const hexagen_sample sample = hexagen_with_hall(2048, 2048, hall);
     for (unsigned period = 0; period < periods; period++) {
         hexagen_checked checked;
-        hexagen_rested rested;
+        hexagen_unfit unfit;
         STATES(!hexagen_check(supervisor, limits, &sample, &set_point, &checked));
-        rested = hexagen_rest(supervisor, limits, &sample, &checked);
-        STATES(rested.leg == leg && rested.is_controlled == is_controlled
-            && rested.against == against);
+        unfit = hexagen_examine(supervisor, limits, &sample, HEXAGEN_FAULT_NONE, &checked);
+        STATES(unfit.is_controlled == is_controlled && unfit.against == against);
+        if (!is_controlled) {
+            STATES(hexagen_rest(supervisor, limits, &sample, unfit.fault) == leg);
+        }
     }
     return 0;
 }
@@ -321,8 +326,10 @@ static int follows(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample sample = hexagen_with_hall(2048, 2048, hall);
     hexagen_checked checked;
     if (!hexagen_check(supervisor, limits, &sample, &set_point, &checked)) {
-        const hexagen_rested rested = hexagen_rest(supervisor, limits, &sample, &checked);
-        if (!rested.is_controlled) {
+        const hexagen_unfit unfit
+            = hexagen_examine(supervisor, limits, &sample, HEXAGEN_FAULT_NONE, &checked);
+        if (!unfit.is_controlled) {
+            (void)hexagen_rest(supervisor, limits, &sample, unfit.fault);
             return -1;
         }
     }
@@ -354,6 +361,18 @@ static int bridges(void)
     return 0;
 }
 
+/* A fault that no sample shows comes before what this one shows. */
+static int knows(hexagen_supervisor *supervisor, hexagen_fault known)
+{
+    const hexagen_sample sample = hexagen_with_hall(2048, 2048, 9);
+    hexagen_checked checked;
+    const hexagen_unfit unfit
+        = hexagen_examine(supervisor, &bridging, &sample, known, &checked);
+    STATES(!unfit.is_controlled && unfit.fault == known);
+    STATES(hexagen_rest(supervisor, &bridging, &sample, known) == HEXAGEN_LEG_OFF);
+    return 0;
+}
+
 static int judges_the_bus(void)
 {
     hexagen_supervisor supervisor;
@@ -364,8 +383,8 @@ static int judges_the_bus(void)
     STATES(hexagen_judge_bus(&rising, 0) == HEXAGEN_SOUND);
     STATES(hexagen_judge_bus(&rising, 65535) == HEXAGEN_SOUND);
     hexagen_start(&supervisor, &bridging);
-    hexagen_trip(&supervisor, HEXAGEN_FAULT_OVER_VOLTAGE);
-    hexagen_trip(&supervisor, HEXAGEN_FAULT_UNDER_VOLTAGE);
+    STATES(knows(&supervisor, HEXAGEN_FAULT_OVER_VOLTAGE) == 0);
+    STATES(knows(&supervisor, HEXAGEN_FAULT_UNDER_VOLTAGE) == 0);
     STATES(supervisor.mode == HEXAGEN_MODE_TRIPPED);
     STATES(supervisor.fault == HEXAGEN_FAULT_OVER_VOLTAGE);
     return 0;

@@ -1,12 +1,38 @@
 //! Every count of every ADC at the ends and in the middle of the offsets, every Hall code, every
 //! order of faults, and contradictory limits.
 
-use super::{Limits, Rest, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor, Turn};
+use super::{Limits, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor, Turn, Unfit};
 use crate::arith::Word;
-use crate::{Fault, LegState, Mode, Sample};
+use crate::{Checked, Fault, LegState, Mode, Sample};
 
 /// A valid Hall code.
 const HALL: u8 = 0b101;
+
+/// What a period that is not fit for control comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Done {
+    Legs(LegState),
+    Control,
+    Against(Word),
+}
+
+impl Supervisor {
+    /// Such a period, of a drive without a fault that no sample shows.
+    fn go_without(
+        &mut self,
+        limits: &Limits,
+        sensors: &Sensors,
+        sample: &Sample,
+    ) -> (Checked, Done) {
+        let (checked, unfit) = self.examine(limits, sensors, sample, None);
+        let done = match unfit {
+            Unfit::Rest(fault) => Done::Legs(self.rest(limits, sensors, sample, fault).0),
+            Unfit::Control => Done::Control,
+            Unfit::Against(direction) => Done::Against(direction),
+        };
+        (checked, done)
+    }
+}
 
 /// Limits of an ADC with this number of bits: offsets within a sixteenth of the middle, a trip
 /// level between two counts.
@@ -117,8 +143,8 @@ fn supervise(limits: &Limits, adc: [u16; 2], hall: u8, offsets: [i32; 2]) -> Opt
         "{limits:?} {sample:?}"
     );
     let checked = passed.unwrap_or_else(|| {
-        let (checked, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
-        assert_eq!(rest, Rest::Legs(LegState::Off));
+        let (checked, rest) = supervisor.go_without(limits, &Sensors::AB, &sample);
+        assert_eq!(rest, Done::Legs(LegState::Off));
         let status = supervisor.status();
         assert_eq!((status.mode, status.fault), (Mode::Tripped, expected));
         checked
@@ -175,7 +201,7 @@ fn ends_of_the_currents_are_reached() {
         for (count, offset) in [(0, most), (u16::MAX, least)] {
             let mut supervisor = calibrated(limits, [offset; 2]);
             let (checked, _) =
-                supervisor.rest(limits, &Sensors::AB, &Sample::with_hall([count; 2], HALL));
+                supervisor.go_without(limits, &Sensors::AB, &Sample::with_hall([count; 2], HALL));
             let end = usize::from((count == 0) == limits.adc_inverted);
             reached[end] = checked.i_a().0;
         }
@@ -269,10 +295,10 @@ fn faults_are_reported_in_their_order() {
                 if passed.is_some() {
                     continue;
                 }
-                let (_, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
+                let (_, rest) = supervisor.go_without(limits, &Sensors::AB, &sample);
                 let charges = mode == Mode::Precharge && expected.is_none();
                 assert_eq!(
-                    rest == Rest::Legs(LegState::Low),
+                    rest == Done::Legs(LegState::Low),
                     charges,
                     "{mode:?} {expected:?}"
                 );
@@ -307,8 +333,8 @@ fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
                 .is_none()
         );
         assert_eq!(
-            supervisor.rest(limits, &Sensors::AB, &sample).1,
-            Rest::Legs(LegState::Off)
+            supervisor.go_without(limits, &Sensors::AB, &sample).1,
+            Done::Legs(LegState::Off)
         );
     }
     for period in 0..limits.precharge_periods {
@@ -322,8 +348,8 @@ fn start_up(limits: &Limits, supervisor: &mut Supervisor, adc: [u16; 2]) {
                 .is_none()
         );
         assert_eq!(
-            supervisor.rest(limits, &Sensors::AB, &sample).1,
-            Rest::Legs(LegState::Low)
+            supervisor.go_without(limits, &Sensors::AB, &sample).1,
+            Done::Legs(LegState::Low)
         );
     }
 }
@@ -369,8 +395,8 @@ fn calibration_judges_no_current_by_offsets_that_it_has_not_measured() {
             supervisor.calibrate(&limits);
             let sample = Sample::with_hall(adc, HALL);
             for _ in 0..1_u32 << limits.calibration_log2 {
-                let (_, rest) = supervisor.rest(&limits, &Sensors::AB, &sample);
-                assert_eq!(rest, Rest::Legs(LegState::Off));
+                let (_, rest) = supervisor.go_without(&limits, &Sensors::AB, &sample);
+                assert_eq!(rest, Done::Legs(LegState::Off));
             }
             supervisor
         };
@@ -380,7 +406,7 @@ fn calibration_judges_no_current_by_offsets_that_it_has_not_measured() {
             for (count, fault) in [(adc[0], None), (limits.offset, Some(Fault::OverCurrent))] {
                 let mut supervisor = supervisor.clone();
                 let sample = Sample::with_hall([count, adc[1]], HALL);
-                supervisor.rest(&limits, &Sensors::AB, &sample);
+                supervisor.go_without(&limits, &Sensors::AB, &sample);
                 assert_eq!(supervisor.fault, fault, "{limits:?} {adc:?} {count}");
             }
         }
@@ -416,7 +442,7 @@ fn a_mean_between_two_counts_keeps_its_fraction() {
         for period in 0..16 {
             let count = 2048 + u16::from(period % 5 == 1);
             let sample = Sample::with_hall([count; 2], HALL);
-            supervisor.rest(&limits, &Sensors::AB, &sample);
+            supervisor.go_without(&limits, &Sensors::AB, &sample);
         }
         assert_eq!(
             supervisor.offsets[..2],
@@ -511,11 +537,11 @@ fn followed(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> Result<i3
     if let Some(checked) = supervisor.check(limits, &Sensors::AB, &sample, || false) {
         return Ok(checked.hall().0);
     }
-    let (checked, rest) = supervisor.rest(limits, &Sensors::AB, &sample);
+    let (checked, rest) = supervisor.go_without(limits, &Sensors::AB, &sample);
     if let Some(fault) = supervisor.status().fault {
         return Err(fault);
     }
-    assert_eq!(rest, Rest::Control);
+    assert_eq!(rest, Done::Control);
     Ok(checked.hall().0)
 }
 
@@ -599,9 +625,17 @@ fn a_bus_voltage_beyond_its_counts_is_a_fault() {
         ..limits
     };
     assert_eq!([0, u16::MAX].map(|counts| any.bus_fault(counts)), [None; 2]);
+    // It comes before what the sample shows, here a Hall code that no sensors give; the first is kept.
     let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
-    supervisor.trip(Fault::OverVoltage);
-    supervisor.trip(Fault::UnderVoltage);
+    let sample = Sample::with_hall([limits.offset; 2], 7);
+    for known in [Fault::OverVoltage, Fault::UnderVoltage] {
+        let known = Some(known);
+        let (_, unfit) = supervisor.examine(&limits, &Sensors::AB, &sample, known);
+        assert_eq!(unfit, Unfit::Rest(known));
+        let tripped = known.filter(|_| supervisor.mode != Mode::Tripped);
+        let done = supervisor.rest(&limits, &Sensors::AB, &sample, known);
+        assert_eq!(done, (LegState::Off, tripped));
+    }
     let status = supervisor.status();
     assert_eq!(
         (status.mode, status.fault),
@@ -760,7 +794,7 @@ const TURN: Turn = Turn {
 };
 
 /// What each of so many periods with a Hall code comes to.
-fn rests<const N: usize>(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> [Rest; N] {
+fn rests<const N: usize>(supervisor: &mut Supervisor, limits: &Limits, hall: u8) -> [Done; N] {
     [(); N].map(|()| {
         let sample = Sample::with_hall([limits.offset; 2], hall);
         assert!(
@@ -768,7 +802,7 @@ fn rests<const N: usize>(supervisor: &mut Supervisor, limits: &Limits, hall: u8)
                 .check(limits, &Sensors::AB, &sample, || true)
                 .is_none()
         );
-        supervisor.rest(limits, &Sensors::AB, &sample).1
+        supervisor.go_without(limits, &Sensors::AB, &sample).1
     })
 }
 
@@ -778,7 +812,7 @@ fn coasting_turns_all_legs_off_without_a_fault_and_still_watches() {
     let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
     supervisor.coast();
     let off = rests(&mut supervisor, &limits, HALL);
-    assert_eq!(off, [Rest::Legs(LegState::Off); 40]);
+    assert_eq!(off, [Done::Legs(LegState::Off); 40]);
     assert_eq!(supervisor.status().fault, None);
     assert!(supervisor.resume());
     let sample = Sample::with_hall([limits.offset; 2], HALL);
@@ -796,12 +830,12 @@ fn coasting_turns_all_legs_off_without_a_fault_and_still_watches() {
 #[test]
 fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
     let limits = limits(12, false, 17);
-    let (off, low) = (Rest::Legs(LegState::Off), Rest::Legs(LegState::Low));
-    let [forward, backward] = [1, -1].map(|direction| Rest::Against(Word(direction)));
+    let (off, low) = (Done::Legs(LegState::Off), Done::Legs(LegState::Low));
+    let [forward, backward] = [1, -1].map(|direction| Done::Against(Word(direction)));
     let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
     supervisor.brake();
     // Nothing is known of the rotor, until it has stood for five periods.
-    let unknown = Rest::Against(Word(0));
+    let unknown = Done::Against(Word(0));
     assert_eq!(
         rests(&mut supervisor, &limits, 1),
         [unknown, unknown, unknown, unknown, low, low, low]
@@ -835,7 +869,7 @@ fn braking_shorts_a_slow_rotor_and_opposes_a_fast_one() {
 }
 
 /// What each of these codes comes to while a drive brakes.
-fn braked<const N: usize>(supervisor: &mut Supervisor, codes: [u8; N]) -> [Rest; N] {
+fn braked<const N: usize>(supervisor: &mut Supervisor, codes: [u8; N]) -> [Done; N] {
     let limits = limits(12, false, 17);
     codes.map(|hall| rests::<1>(supervisor, &limits, hall)[0])
 }
@@ -844,8 +878,8 @@ fn braked<const N: usize>(supervisor: &mut Supervisor, codes: [u8; N]) -> [Rest;
 /// chatters; and so do those of one that is rocked by hand.
 #[test]
 fn a_rotor_that_stands_stays_shorted_whatever_one_sensor_does() {
-    let low = Rest::Legs(LegState::Low);
-    let unknown = Rest::Against(Word(0));
+    let low = Done::Legs(LegState::Low);
+    let unknown = Done::Against(Word(0));
     let limits = limits(12, false, 17);
     let braking = || {
         let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
@@ -898,12 +932,12 @@ fn a_rotor_that_stands_stays_shorted_whatever_one_sensor_does() {
 /// interval is that of the sector.
 #[test]
 fn a_turning_rotor_is_opposed_behind_two_edges_in_one_direction() {
-    let unknown = Rest::Against(Word(0));
+    let unknown = Done::Against(Word(0));
     let limits = limits(12, false, 17);
     for (codes, sign) in [([1_u8, 5, 4, 6, 2, 3], 1), ([3, 2, 6, 4, 5, 1], -1)] {
         let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
         supervisor.brake();
-        let against = Rest::Against(Word(sign));
+        let against = Done::Against(Word(sign));
         for (place, hall) in codes.into_iter().enumerate() {
             let expected = if place < 2 { unknown } else { against };
             assert_eq!(braked(&mut supervisor, [hall; 4]), [expected; 4], "{hall}");
@@ -925,7 +959,7 @@ fn a_start_ends_behind_two_edges_in_one_direction_or_so_many_periods() {
         start_periods: 9,
         ..limits(12, false, 17)
     };
-    let off = Rest::Legs(LegState::Off);
+    let off = Done::Legs(LegState::Off);
     let ends_with = |codes: &[u8]| {
         let mut supervisor = Supervisor::new(&limits, &Sensors::AB);
         for (period, &hall) in (1..).zip(codes) {
@@ -951,7 +985,7 @@ fn a_start_ends_behind_two_edges_in_one_direction_or_so_many_periods() {
     supervisor.coast();
     assert_eq!(rests(&mut supervisor, &limits, 5), [off; 2]);
     supervisor.brake();
-    let forward = Rest::Against(Word(1));
+    let forward = Done::Against(Word(1));
     assert_eq!(rests(&mut supervisor, &limits, 5), [off; 1]);
     assert_eq!(rests(&mut supervisor, &limits, 4), [forward; 2]);
     // Control follows without another start.

@@ -8,12 +8,12 @@
 use crate::BenchError;
 use crate::listing::Listed;
 use hexagen::{Command as _, Fault, Sample};
-use hexagen_firmware::wire::{BLOCK, Digest, Record, encode_outputs};
+use hexagen_firmware::wire::{BLOCK, Digest, Record, Stop, encode_outputs};
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop, Delay};
 use hexagen_lab::engine::{MotorSource, Prepared, plant_of, prepare};
 use hexagen_lab::plant::{Plant, Truth};
-use hexagen_reference::AnyCommand;
 use hexagen_reference::verify::{Action, Context, Stimulus, Subject};
+use hexagen_reference::{self as reference, AnyCommand};
 use std::f64::consts::TAU;
 
 /// Steps of a stretch.
@@ -168,6 +168,19 @@ impl Stretch {
     /// # Errors
     /// If the plant is invalid.
     pub fn close(&self, drive: &Prepared, called: &mut impl Called) -> Result<(), BenchError> {
+        self.close_and_stop(drive, called, None)
+    }
+
+    /// The same, with a call that turns the drive off on purpose before each half.
+    ///
+    /// # Errors
+    /// If the plant is invalid.
+    pub fn close_and_stop(
+        &self,
+        drive: &Prepared,
+        called: &mut impl Called,
+        stops: Option<[Stop; 2]>,
+    ) -> Result<(), BenchError> {
         called.call(Record::New);
         if let Some(counts) = drive.bus_counts(drive.spec.inverter.v_bus) {
             called.call(Record::SetBus(counts));
@@ -184,7 +197,10 @@ impl Stretch {
             let wanted = Record::SetSpeed(self.wanted_rpm(drive));
             closed.controller().0.call(wanted);
         }
-        for share in self.currents {
+        for (half, share) in self.currents.into_iter().enumerate() {
+            if let Some(stops) = stops {
+                closed.controller().0.call(Record::Stop(stops[half]));
+            }
             let bits = (share * inverter.max_current * 65_536.0) as i32;
             closed.controller().0.call(Record::SetCurrent(bits));
             closed.run(self.steps / 2, &mut ());
@@ -238,6 +254,11 @@ impl Called for OnHost<'_> {
             Record::Reset => self.subject.reset(),
             Record::Calibrate => self.subject.calibrate(),
             Record::Precharge => self.subject.precharge(),
+            Record::Stop(stop) => self.subject.stop(match stop {
+                Stop::Coast => reference::Stop::Coast,
+                Stop::Brake => reference::Stop::Brake,
+                Stop::Resume => reference::Stop::Resume,
+            }),
             Record::Step(_) | Record::SetStateWord { .. } => {}
         }
     }
@@ -342,8 +363,12 @@ impl<'g> Recorder<'g> {
                     }
                 }
                 Some(Action::SetSpeed(bits)) => self.call(Record::SetSpeed(bits)),
-                // Nor do vectors coast or brake.
-                Some(Action::Stop(_)) | None => {}
+                Some(Action::Stop(stop)) => self.call(Record::Stop(match stop {
+                    reference::Stop::Coast => Stop::Coast,
+                    reference::Stop::Brake => Stop::Brake,
+                    reference::Stop::Resume => Stop::Resume,
+                })),
+                None => {}
             }
             let command = self.step(sample);
             stimulus.respond(command);

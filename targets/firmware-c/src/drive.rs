@@ -15,6 +15,7 @@ macro_rules! drives {
         $name:ident: [u32; $words:literal], $symbol:ident, {
             init: $init:ident, set_current: $set_current:ident, set_torque: $set_torque:ident,
             reset: $reset:ident, calibrate: $calibrate:ident, precharge: $precharge:ident,
+            coast: $coast:ident, brake: $brake:ident, resume: $resume:ident,
             status: $status:ident, state_words: $state_words:ident,
             set_state_words: $set_state_words:ident
         },
@@ -29,6 +30,9 @@ macro_rules! drives {
                 safe fn $reset(drive: &mut $name);
                 safe fn $calibrate(drive: &mut $name);
                 safe fn $precharge(drive: &mut $name);
+                safe fn $coast(drive: &mut $name);
+                safe fn $brake(drive: &mut $name);
+                safe fn $resume(drive: &mut $name);
                 safe fn $status(drive: &$name) -> StatusInC;
                 fn $state_words(drive: *const $name, words: *mut i32);
                 fn $set_state_words(drive: *mut $name, words: *const i32);
@@ -82,6 +86,14 @@ macro_rules! drives {
 
                 fn precharge(&mut self) {
                     $precharge(self);
+                }
+
+                fn stop(&mut self, stop: Stop) {
+                    match stop {
+                        Stop::Coast => $coast(self),
+                        Stop::Brake => $brake(self),
+                        Stop::Resume => $resume(self),
+                    }
                 }
 
                 fn fault(&self) -> Option<Fault> {

@@ -12,6 +12,7 @@ mod drive;
 use drive::StatusInC;
 use hexagen_firmware::hexagen::{Fault, Supervisor};
 use hexagen_firmware::session::replay;
+use hexagen_firmware::wire::Stop;
 use hexagen_firmware::{Drives, LegsInC, Listed, SampleInC, StepFn, Subject};
 
 include!(concat!(env!("OUT_DIR"), "/drives.rs"));

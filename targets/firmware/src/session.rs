@@ -7,7 +7,7 @@ use crate::peers::Peer;
 use crate::subject::{MOST_WORDS, Subject};
 use crate::supervised::{Supervised, step_supervised};
 use crate::wire::{BLOCK, Digest, HEADER, Mode, RECORD, Record, Task, encode_outputs};
-use hexagen::{Control, Drive, Sample};
+use hexagen::{Control, Drive, Fault, Sample};
 
 /// Serves one task on the drives of this firmware.
 ///
@@ -48,24 +48,29 @@ pub fn replay_drive<C: Control>(
 /// # Errors
 /// If the exchange ends early.
 pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
-    let mut replayed = Replayed {
-        drive: D::new(),
-        step,
-        depth: 0,
-    };
+    let drive = D::new();
+    replay_on(&mut Replayed { drive, step }, link, task)
+}
+
+/// The same, compiled once for all drives: the smallest core's flash has to hold them.
+fn replay_on(replayed: &mut dyn Replay, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
     let mut records = [0; BLOCK * RECORD];
-    let mut block = 0;
+    let (mut block, mut depth) = (0, 0);
     loop {
         let length = link.read(&mut records)?;
         let (records, _) = records[..length].as_chunks();
         match task.mode {
-            Mode::Digest if length > 0 => link.write(&replayed.digest(records)?.encode())?,
-            Mode::Full if block == task.block => return replayed.full(records, link),
+            Mode::Digest if length > 0 => link.write(&digest(replayed, records)?.encode())?,
+            Mode::Full if block == task.block => return full(replayed, records, link),
             Mode::Full => {
-                replayed.digest(records)?;
+                digest(replayed, records)?;
             }
             Mode::Count | Mode::Trace | Mode::Stack => {
-                replayed.measure(records, task.mode, link)?;
+                for &record in records {
+                    if let Some(sample) = sample_after(replayed, record)? {
+                        replayed.measure(task.mode, sample, &mut depth, link)?;
+                    }
+                }
             }
             Mode::Digest | Mode::List | Mode::Supervision => {}
         }
@@ -75,7 +80,7 @@ pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> 
         block += 1;
     }
     if task.mode == Mode::Stack {
-        link.write(&replayed.depth.to_le_bytes())?;
+        link.write(&depth.to_le_bytes())?;
     }
     Ok(())
 }
@@ -132,17 +137,35 @@ pub(crate) fn measure<D>(
     }
 }
 
+/// A drive of any kind with its step function.
+trait Replay {
+    /// A call other than a step.
+    fn call(&mut self, record: Record);
+    /// One step; returns the bits of its command.
+    fn step(&mut self, sample: Sample) -> u64;
+    /// One counted, traced or measured step.
+    fn measure(
+        &mut self,
+        mode: Mode,
+        sample: Sample,
+        depth: &mut u32,
+        link: &mut dyn Link,
+    ) -> Result<(), Broken>;
+    /// Fault of the drive.
+    fn fault(&self) -> Option<Fault>;
+    /// The state words, at the front of `words`.
+    fn state_words<'w>(&self, words: &'w mut [i32; MOST_WORDS]) -> &'w [i32];
+}
+
 struct Replayed<D> {
     drive: D,
     step: StepFn<D>,
-    depth: u32,
 }
 
-impl<D: Subject> Replayed<D> {
-    /// The sample of a step; any other call is executed.
-    fn sample(&mut self, record: [u8; RECORD]) -> Result<Option<Sample>, Broken> {
-        match Record::decode(record).ok_or(Broken::Format)? {
-            Record::Step(sample) => return Ok(Some(sample)),
+impl<D: Subject> Replay for Replayed<D> {
+    fn call(&mut self, record: Record) {
+        match record {
+            Record::Step(_) => {}
             Record::New => self.drive = D::new(),
             Record::SetCurrent(bits) => self.drive.set_current(bits),
             Record::SetTorque(bits) => self.drive.set_torque(bits),
@@ -151,68 +174,78 @@ impl<D: Subject> Replayed<D> {
             Record::Reset => self.drive.reset(),
             Record::Calibrate => self.drive.calibrate(),
             Record::Precharge => self.drive.precharge(),
+            Record::Stop(stop) => self.drive.stop(stop),
             Record::SetStateWord { index, value } => {
                 self.drive.set_state_word(usize::from(index), value);
             }
         }
-        Ok(None)
     }
 
-    /// One step; returns the bits of its command.
     fn step(&mut self, sample: Sample) -> u64 {
         self.step.call(&mut self.drive, sample)
     }
 
-    /// The state words after a step, at the front of `words`.
+    fn measure(
+        &mut self,
+        mode: Mode,
+        sample: Sample,
+        depth: &mut u32,
+        link: &mut dyn Link,
+    ) -> Result<(), Broken> {
+        measure(mode, self.step, &mut self.drive, sample, depth, link)
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        self.drive.fault()
+    }
+
     fn state_words<'w>(&self, words: &'w mut [i32; MOST_WORDS]) -> &'w [i32] {
         const { assert!(D::WORDS <= MOST_WORDS) };
         self.drive.state_words(words);
         &words[..D::WORDS]
     }
+}
 
-    fn digest(&mut self, records: &[[u8; RECORD]]) -> Result<Digest, Broken> {
-        let (mut digest, mut words) = (Digest::default(), [0; MOST_WORDS]);
-        for &record in records {
-            let Some(sample) = self.sample(record)? else {
-                continue;
-            };
-            let command = self.step(sample);
-            digest.answer(command, self.drive.fault());
-            for &word in self.state_words(&mut words) {
-                digest.word(word as u32);
-            }
-        }
-        Ok(digest)
+/// The sample of a step; any other call is executed.
+fn sample_after(replayed: &mut dyn Replay, record: [u8; RECORD]) -> Result<Option<Sample>, Broken> {
+    let record = Record::decode(record).ok_or(Broken::Format)?;
+    if let Record::Step(sample) = record {
+        return Ok(Some(sample));
     }
+    replayed.call(record);
+    Ok(None)
+}
 
-    fn full(&mut self, records: &[[u8; RECORD]], link: &mut dyn Link) -> Result<(), Broken> {
-        let mut words = [0; MOST_WORDS];
-        for &record in records {
-            let Some(sample) = self.sample(record)? else {
-                continue;
-            };
-            let command = self.step(sample);
-            link.write(&encode_outputs(command, self.drive.fault()))?;
-            for word in self.state_words(&mut words) {
-                link.write(&word.to_le_bytes())?;
-            }
+fn digest(replayed: &mut dyn Replay, records: &[[u8; RECORD]]) -> Result<Digest, Broken> {
+    let (mut digest, mut words) = (Digest::default(), [0; MOST_WORDS]);
+    for &record in records {
+        let Some(sample) = sample_after(replayed, record)? else {
+            continue;
+        };
+        let command = replayed.step(sample);
+        digest.answer(command, replayed.fault());
+        for &word in replayed.state_words(&mut words) {
+            digest.word(word as u32);
         }
-        Ok(())
     }
+    Ok(digest)
+}
 
-    /// Counts, traces or sounds the steps.
-    fn measure(
-        &mut self,
-        records: &[[u8; RECORD]],
-        mode: Mode,
-        link: &mut dyn Link,
-    ) -> Result<(), Broken> {
-        for &record in records {
-            if let Some(sample) = self.sample(record)? {
-                let (step, drive) = (self.step, &mut self.drive);
-                measure(mode, step, drive, sample, &mut self.depth, link)?;
-            }
+fn full(
+    replayed: &mut dyn Replay,
+    records: &[[u8; RECORD]],
+    link: &mut dyn Link,
+) -> Result<(), Broken> {
+    let mut words = [0; MOST_WORDS];
+    for &record in records {
+        let Some(sample) = sample_after(replayed, record)? else {
+            continue;
+        };
+        let command = replayed.step(sample);
+        link.write(&encode_outputs(command, replayed.fault()))?;
+        for word in replayed.state_words(&mut words) {
+            link.write(&word.to_le_bytes())?;
         }
-        Ok(())
     }
+    Ok(())
 }

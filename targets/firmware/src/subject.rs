@@ -1,5 +1,6 @@
 //! A drive for replay, in Rust or in C.
 
+use crate::wire::Stop;
 use hexagen::fixed::types::I16F16;
 use hexagen::{Control, Drive, Fault, State, Supervisor};
 
@@ -27,6 +28,8 @@ pub trait Subject {
     fn calibrate(&mut self);
     /// Starts the bootstrap pre-charge.
     fn precharge(&mut self);
+    /// Coasts, brakes, or ends both.
+    fn stop(&mut self, stop: Stop);
     /// Fault of the drive.
     fn fault(&self) -> Option<Fault>;
     /// Copies its state words to the front of `words`.
@@ -68,6 +71,15 @@ impl<C: Control> Subject for Drive<C> {
 
     fn precharge(&mut self) {
         self.control().precharge();
+    }
+
+    fn stop(&mut self, stop: Stop) {
+        let mut control = self.control();
+        match stop {
+            Stop::Coast => control.coast(),
+            Stop::Brake => control.brake(),
+            Stop::Resume => control.resume(),
+        }
     }
 
     fn fault(&self) -> Option<Fault> {

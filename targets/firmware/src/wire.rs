@@ -87,6 +87,17 @@ impl Task {
     }
 }
 
+/// Being off on purpose, or its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// All legs off.
+    Coast = 0,
+    /// Slowing the rotor down.
+    Brake = 1,
+    /// The end of both.
+    Resume = 2,
+}
+
 /// A call of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Record {
@@ -108,6 +119,8 @@ pub enum Record {
     Precharge,
     /// Speed set-point, bits of an `I16F16` in rpm.
     SetSpeed(i32),
+    /// Coasting, braking, or the end of both.
+    Stop(Stop),
     /// Overwrites a state word.
     SetStateWord {
         /// Index among the state words.
@@ -151,6 +164,7 @@ impl Record {
             Self::Precharge => number(7, 0, 0),
             Self::SetStateWord { index, value } => number(8, value, index),
             Self::SetSpeed(bits) => number(9, bits, 0),
+            Self::Stop(stop) => number(10, stop as i32, 0),
         }
     }
 
@@ -174,6 +188,12 @@ impl Record {
             7 => Self::Precharge,
             8 => Self::SetStateWord { index, value },
             9 => Self::SetSpeed(value),
+            10 => Self::Stop(match value {
+                0 => Stop::Coast,
+                1 => Stop::Brake,
+                2 => Stop::Resume,
+                _ => return None,
+            }),
             _ => return None,
         })
     }

@@ -3,8 +3,8 @@
 use crate::{Inputs, angle, limits, sensors};
 use hexagen::arith::{Word, scaled_torque};
 use hexagen::{
-    AngleSensor, Checked, Command, Fault, Intervals, LegState, Legs, Limits, Rest, Sample, Sensors,
-    Supervisor,
+    AngleSensor, Checked, Command, Fault, Intervals, LegState, Legs, Limits, Sample, Sensors,
+    Supervisor, Unfit,
 };
 use hexagen_codegen::interface::{Interface, Watch};
 use hexagen_codegen::ir::{Demand, Escape, Machine, Output, Phase, Program, Setter, Value};
@@ -204,7 +204,8 @@ impl<'g> Interpreted<'g> {
         self.machine.value(value)
     }
 
-    fn try_step(&mut self, sample: &Sample) -> Result<AnyCommand, Escape> {
+    /// A period, at whose begin a fault is known that its sample does not show, or none.
+    fn try_step(&mut self, sample: &Sample, known: Option<Fault>) -> Result<AnyCommand, Escape> {
         let Self {
             machine,
             supervisor,
@@ -218,15 +219,17 @@ impl<'g> Interpreted<'g> {
         let with_angle =
             |checked: Checked| angle.map_or(checked, |_| checked.with_angle_of(sample));
         let is_demanded = machine.params[places.set_point] != 0;
-        let checked = match supervisor.check(limits, sensors, sample, || is_demanded) {
+        let checked = supervisor.check(limits, sensors, sample, || is_demanded);
+        let checked = match checked.filter(|_| known.is_none()) {
             Some(checked) => with_angle(checked),
-            None => match supervisor.rest(limits, sensors, sample) {
-                (checked, Rest::Legs(leg)) => {
+            None => match supervisor.examine(limits, sensors, sample, known) {
+                (checked, Unfit::Rest(fault)) => {
+                    let (legs, _) = supervisor.rest(limits, sensors, sample, fault);
                     machine.rest(&places.inputs.words(&with_angle(checked)))?;
-                    return Ok(places.command.at_rest(leg));
+                    return Ok(places.command.at_rest(legs));
                 }
-                (checked, Rest::Control) => with_angle(checked),
-                (checked, Rest::Against(direction)) => {
+                (checked, Unfit::Control) => with_angle(checked),
+                (checked, Unfit::Against(direction)) => {
                     if places.has_speed {
                         machine.params[places.set_point] = 0;
                     } else {
@@ -258,18 +261,14 @@ fn place_of(program: &Program, word: &str) -> usize {
 
 impl Subject for Interpreted<'_> {
     fn step(&mut self, sample: &Sample) -> AnyCommand {
-        if let Some(fault) = self.bus.as_mut().and_then(BusWatch::pass_period) {
-            self.supervisor.trip(fault);
-        }
+        let of_bus = self.bus.as_mut().and_then(BusWatch::pass_period);
         if let Some(place) = self.places.bus_is_fresh {
             self.machine.params[place] = (!self.bus_is_stale()).into();
         }
-        for (place, most, fault) in self.watches.into_iter().flatten() {
-            if self.machine.state[place] >= most {
-                self.supervisor.trip(fault);
-            }
-        }
-        self.try_step(sample).unwrap_or_else(|escape| {
+        let mut watches = self.watches.into_iter().flatten();
+        let found = watches.find(|&(place, most, _)| self.machine.state[place] >= most);
+        let known = of_bus.or(found.map(|(_, _, fault)| fault));
+        self.try_step(sample, known).unwrap_or_else(|escape| {
             self.escape.get_or_init(|| escape);
             self.places.command.at_rest(LegState::Off)
         })

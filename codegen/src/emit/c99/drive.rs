@@ -117,7 +117,7 @@ impl Drive<'_> {
 
     /// The public functions, and the private ones that they call.
     pub(super) fn functions(&self) -> String {
-        let mut text = self.keep_trip() + &self.trip_unsampled() + &self.step_at_rest();
+        let mut text = self.examine() + &self.keep_trip() + &self.step_at_rest();
         let setters = self.program.setters.iter();
         text.extend(
             setters.map(|(_, setter)| emit_setter(self.program, setter, self.names).stages),
@@ -152,12 +152,12 @@ impl Drive<'_> {
         format!("{} *drive", self.names.prefix)
     }
 
-    /// A call of an entry of the law.
-    fn call(&self, entry: usize, name: &str, rotor: &str) -> String {
+    /// A call of an entry of the law; `checked` points to the checked sample.
+    fn call(&self, entry: usize, name: &str, checked: &str, rotor: &str) -> String {
         let arguments = self.step.arguments[entry].iter();
         let arguments = arguments.map(|&argument| match argument {
             "state" => "&drive->state",
-            "sample" => "&checked",
+            "sample" => checked,
             "rotor" => rotor,
             "observation" => "&observation",
             other => other,
@@ -167,11 +167,11 @@ impl Drive<'_> {
     }
 
     /// The statements that track; the result is bound if `is_named`.
-    fn track(&self, is_named: bool) -> String {
+    fn track(&self, checked: &str, is_named: bool) -> String {
         if !self.step.tracks {
             return String::new();
         }
-        let call = self.call(0, "track", "");
+        let call = self.call(0, "track", checked, "");
         if !self.step.has_rotor {
             lines(&[&format!("{call};")])
         } else if is_named {
@@ -193,48 +193,99 @@ impl Drive<'_> {
         "&seen"
     }
 
-    /// The period without control.
-    fn step_at_rest(&self) -> String {
-        let names = self.names;
-        let takes_rotor = self.step.arguments[1].contains(&"rotor");
-        let mut body = lines(&[
-            "const hexagen_mode before = drive->supervisor.mode;",
-            "hexagen_checked checked;",
-        ]);
+    /// What becomes of a period that is not fit for control.
+    fn examine(&self) -> String {
+        let mut body = String::new();
         let seen = self.resolve(&mut body);
-        body.push_str(&lines(&[&format!(
-            "const hexagen_rested rested = hexagen_rest(&drive->supervisor, &limits, {seen}, &checked);"
-        )]));
+        body.push_str(&lines(&[
+            "const hexagen_unfit unfit",
+            &format!(
+                "{INDENT}= hexagen_examine(&drive->supervisor, &limits, {seen}, known, checked);"
+            ),
+        ]));
         let inner = INDENT.repeat(2);
+        let demand = if self.has_speed() {
+            "drive->speed = 0".to_owned()
+        } else {
+            format!(
+                "{}(drive, -INT32_MAX * unfit.against)",
+                self.names.public(Setter::Current.name())
+            )
+        };
         let _ = write!(
             body,
-            "{INDENT}if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED\n\
-             {inner}&& before != HEXAGEN_MODE_TRIPPED) {{\n\
-             {inner}keep_trip(drive, sample);\n{INDENT}}}\n"
+            "{INDENT}if (unfit.is_braking) {{\n{inner}{demand};\n{INDENT}}}\n\
+             {INDENT}if (unfit.is_controlled) {{\n\
+             {inner}drive->status = hexagen_status_word(&drive->supervisor);\n{INDENT}}}\n"
         );
+        body.push_str(&lines(&["return unfit;"]));
+        let told = "A period that is not fit for control. The drive controls nevertheless to brake a fast rotor, and where a disturbed Hall code is bridged.";
+        let head = format!(
+            "static hexagen_unfit examine({}, const hexagen_sample *sample, hexagen_fault known, hexagen_checked *checked)",
+            self.drive()
+        );
+        self.cold(told, &head, &body)
+    }
+
+    /// A private function off the normal path.
+    fn cold(&self, told: &str, head: &str, body: &str) -> String {
+        let comment = self.names.comment("", &[told]);
+        let head = wrapped("", head);
+        format!("{comment}HEXAGEN_COLD\n{head}{{\n{body}}}\n\n")
+    }
+
+    /// The period without control.
+    fn step_at_rest(&self) -> String {
+        let takes_rotor = self.step.arguments[1].contains(&"rotor");
+        let inner = INDENT.repeat(2);
+        let mut body = lines(&[
+            "const bool was_tripped = drive->supervisor.mode == HEXAGEN_MODE_TRIPPED;",
+            "const hexagen_leg leg = hexagen_rest(&drive->supervisor, &limits, sample, fault);",
+            "if (drive->supervisor.mode == HEXAGEN_MODE_TRIPPED && !was_tripped) {",
+        ]);
+        let _ = write!(body, "{inner}keep_trip(drive, sample);\n{INDENT}}}\n");
         body.push_str(&lines(&[
             "drive->status = hexagen_status_word(&drive->supervisor);",
         ]));
-        body.push_str(&self.oppose());
-        body.push_str(&self.track(takes_rotor));
+        body.push_str(&self.track("checked", takes_rotor));
         if !self.step.arguments[1].is_empty() {
-            body.push_str(&lines(&[&format!("{};", self.call(1, "rest", "rotor"))]));
+            let call = self.call(1, "rest", "checked", "rotor");
+            body.push_str(&lines(&[&format!("{call};")]));
         }
-        body.push_str(&lines(&["return hexagen_period_of(rested, checked);"]));
-        let comment = names.comment(
-            "",
-            &[
-                "A period without control: start-up or fault. Mode and fault change in these periods only, and are published here.",
-            ],
-        );
+        let has_intervals = self.program.has_intervals();
+        let all = if has_intervals {
+            "hexagen_all_intervals"
+        } else {
+            "hexagen_all_legs"
+        };
+        body.push_str(&lines(&[&format!("return {all}(leg);")]));
+        let checked = if self.rest_takes_checked() {
+            ", const hexagen_checked *checked"
+        } else {
+            ""
+        };
+        let told = "A period with all legs in one state: start-up, a fault, or off on purpose. Apart from `examine`, so that no way leads from here to control.";
         let head = format!(
-            "static hexagen_period step_at_rest({}, const hexagen_sample *sample)",
+            "static {} step_at_rest({}, const hexagen_sample *sample, hexagen_fault fault{checked})",
+            self.command(),
             self.drive()
         );
-        format!(
-            "{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n",
-            wrapped("", &head)
-        )
+        self.cold(told, &head, &body)
+    }
+
+    /// Whether a period without control takes the checked sample.
+    fn rest_takes_checked(&self) -> bool {
+        let [tracks, rests, _] = &self.step.arguments;
+        (self.step.tracks && tracks.contains(&"sample")) || rests.contains(&"sample")
+    }
+
+    /// The type of a command.
+    fn command(&self) -> &'static str {
+        if self.program.has_intervals() {
+            "hexagen_intervals"
+        } else {
+            "hexagen_legs"
+        }
     }
 
     /// The function that keeps the period of a trip.
@@ -259,15 +310,11 @@ impl Drive<'_> {
         body.push_str(&lines(&[
             "drive->trip_number = (drive->trip_number + 1U) | 1U;",
         ]));
-        let comment = self.names.comment("", &["Keeps the period of a trip."]);
         let head = format!(
             "static void keep_trip({}, const hexagen_sample *sample)",
             self.drive()
         );
-        format!(
-            "{comment}HEXAGEN_COLD\n{}{{\n{body}}}\n\n",
-            wrapped("", &head)
-        )
+        self.cold("Keeps the period of a trip.", &head, &body)
     }
 
     /// What the law watches itself, with its fault.
@@ -279,45 +326,6 @@ impl Drive<'_> {
         } = *self.interface;
         let watches = [(residual, "RESIDUAL"), (over_speed, "OVER_SPEED")].into_iter();
         watches.filter_map(|(watch, fault)| Some((watch?, fault)))
-    }
-
-    /// The trip for what no sample shows: a bus voltage, or what the law watches; empty without either.
-    fn trip_unsampled(&self) -> String {
-        if self.unsampled_faults().is_empty() {
-            return String::new();
-        }
-        let inner = INDENT.repeat(2);
-        let comment = self
-            .names
-            .comment("", &["Trips the drive, unless it is tripped already."]);
-        let head = format!(
-            "static void trip_unsampled({}, const hexagen_sample *sample, hexagen_fault fault)",
-            self.drive()
-        );
-        format!(
-            "{comment}HEXAGEN_COLD\n{}{{\n{INDENT}if (drive->supervisor.mode != HEXAGEN_MODE_TRIPPED) {{\n\
-             {inner}hexagen_trip(&drive->supervisor, fault);\n\
-             {inner}keep_trip(drive, sample);\n{INDENT}}}\n}}\n\n",
-            wrapped("", &head)
-        )
-    }
-
-    /// The statements that end a rest where a fast rotor is braked.
-    fn oppose(&self) -> String {
-        let inner = INDENT.repeat(2);
-        let demand = if self.has_speed() {
-            "drive->speed = 0".to_owned()
-        } else {
-            format!(
-                "{}(drive, -INT32_MAX * rested.against)",
-                self.names.public(Setter::Current.name())
-            )
-        };
-        format!(
-            "{INDENT}if (rested.is_braking) {{\n{inner}{demand};\n{INDENT}}}\n\
-             {INDENT}if (rested.is_controlled) {{\n\
-             {inner}return hexagen_period_of(rested, checked);\n{INDENT}}}\n"
-        )
     }
 
     fn init(&self) -> Method {
@@ -353,7 +361,7 @@ impl Drive<'_> {
         }
     }
 
-    /// The statements that trip the drive for the first fault that no sample shows; empty without any.
+    /// The statements that find the first fault that no sample shows; empty without any.
     fn unsampled_faults(&self) -> String {
         let periods = self.interface.bus_periods;
         if periods.is_none() && self.watches().next().is_none() {
@@ -380,39 +388,45 @@ impl Drive<'_> {
                 "}",
             ]));
         }
-        body.push_str(&lines(&[
-            "if (fault != HEXAGEN_FAULT_NONE) {",
-            &format!("{INDENT}trip_unsampled(drive, sample, fault);"),
-            "}",
-        ]));
         body
     }
 
     fn period(&self) -> Method {
         let mut body = lines(&["hexagen_checked checked;"]);
         let seen = self.resolve(&mut body);
-        body.push_str(&self.unsampled_faults());
+        let faults = self.unsampled_faults();
+        body.push_str(&faults);
         let check = format!(
-            "if (!hexagen_check(&drive->supervisor, &limits, {seen}, &drive->{}, &checked)) {{",
+            "!hexagen_check(&drive->supervisor, &limits, {seen}, &drive->{}, &checked)",
             self.demand()
         );
-        body.push_str(&lines(&[&check]));
-        let has_intervals = self.program.has_intervals();
-        let [kind, command, at_rest] = if has_intervals {
-            let at_rest = "hexagen_all_intervals(period.legs.state[0])";
-            ["hexagen_intervals", "intervals", at_rest]
+        let (condition, known) = if faults.is_empty() {
+            (check, "HEXAGEN_FAULT_NONE")
         } else {
-            ["hexagen_legs", "legs", "period.legs"]
+            // The supervisor follows its sample in any case.
+            (format!("{check} || fault != HEXAGEN_FAULT_NONE"), "fault")
         };
-        let _ = write!(
-            body,
-            "{INDENT}{INDENT}const hexagen_period period = step_at_rest(drive, sample);\n\
-             {INDENT}{INDENT}if (!period.is_controlled) {{\n\
-             {INDENT}{INDENT}{INDENT}return {at_rest};\n{INDENT}{INDENT}}}\n\
-             {INDENT}{INDENT}checked = period.checked;\n{INDENT}}}\n"
-        );
+        let checked = if self.rest_takes_checked() {
+            ", &checked"
+        } else {
+            ""
+        };
+        let inner = INDENT.repeat(2);
+        body.push_str(&lines(&[
+            &format!("if ({condition}) {{"),
+            &format!(
+                "{INDENT}const hexagen_unfit unfit = examine(drive, sample, {known}, &checked);"
+            ),
+            &format!("{INDENT}if (!unfit.is_controlled) {{"),
+            &format!("{inner}return step_at_rest(drive, sample, unfit.fault{checked});"),
+            &format!("{INDENT}}}"),
+            "}",
+        ]));
+        let has_intervals = self.program.has_intervals();
+        let kind = self.command();
+        let command = if has_intervals { "intervals" } else { "legs" };
         let takes_rotor = self.step.arguments[2].contains(&"rotor");
-        body.push_str(&self.track(takes_rotor));
+        body.push_str(&self.track("&checked", takes_rotor));
         let observation = lines(&["hexagen_observation observation = HEXAGEN_UNOBSERVED;"]);
         let mut signals = String::new();
         if self.step.arguments[2].contains(&"observation") {
@@ -420,7 +434,7 @@ impl Drive<'_> {
         } else {
             signals.push_str(&observation);
         }
-        let step = self.call(2, "step", "rotor");
+        let step = self.call(2, "step", "&checked", "rotor");
         body.push_str(&lines(&[&format!("const {kind} {command} = {step};")]));
         let third = self.interface.limits.sensors.third;
         if third.is_some_and(|third| third.readable.is_some()) {

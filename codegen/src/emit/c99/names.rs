@@ -80,19 +80,20 @@ const KEYWORDS: [&str; 69] = [
 ];
 
 /// Local names, types and functions of every emitted source.
-const RESERVED: [&str; 25] = [
-    "before",
+const RESERVED: [&str; 28] = [
     "bus",
     "checked",
     "drive",
+    "examine",
+    "fault",
     "initial",
+    "known",
+    "leg",
     "legs",
     "limits",
     "number",
     "observation",
-    "period",
     "rest",
-    "rested",
     "result",
     "rotor",
     "sample",
@@ -104,7 +105,9 @@ const RESERVED: [&str; 25] = [
     "track",
     "tracked",
     "trip",
+    "unfit",
     "units",
+    "was_tripped",
     "words",
 ];
 

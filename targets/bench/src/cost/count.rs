@@ -5,11 +5,12 @@ use super::elf::Image;
 use super::longest::Program;
 use crate::BenchError;
 use crate::firmware::Firmware;
-use crate::vectors::{Recorder, Stretch};
+use crate::vectors::{Called, Recorder, Stretch};
 use hexagen::{Legs, Sample};
-use hexagen_firmware::wire::{Mode, Record, Task};
+use hexagen_firmware::wire::{Mode, Record, Stop, Task};
 use hexagen_lab::engine::Prepared;
 use hexagen_lab::plant::Truth;
+use std::ops::Range;
 
 /// Steps of a stretch; its second half counts as settled.
 const STEPS: usize = 2000;
@@ -17,8 +18,11 @@ const STEPS: usize = 2000;
 /// Steps of the stretch that is traced instruction by instruction.
 const TRACED: usize = 240;
 
-/// Seed of the stimulus of the bit-for-bit test.
-const STIMULUS: u64 = 9;
+/// Shares of the rated speed from which the drive brakes: the bus ends the voltage at the higher ones.
+const BRAKED: [f64; 4] = [0.9, 1.6, -0.9, -1.6];
+
+/// Seeds of the stimulus of the bit-for-bit test.
+const STIMULI: Range<u64> = 9..13;
 
 /// Inputs of a closed loop, with the steps of the normal path marked.
 #[derive(Debug)]
@@ -27,8 +31,8 @@ pub struct Inputs {
     records: Vec<u8>,
     /// A short stretch.
     traced: Vec<u8>,
-    /// Calibration, pre-charge, and arbitrary inputs and calls, which trip the drive; only for
-    /// drives.
+    /// Calibration, pre-charge, coasting, braking, and arbitrary inputs and calls, which trip the drive;
+    /// only for drives.
     arbitrary: Option<Vec<u8>>,
 }
 
@@ -75,7 +79,18 @@ impl Inputs {
             ..traced(drive)
         };
         start.close(drive, &mut arbitrary)?;
-        arbitrary.edges(drive, STIMULUS)?;
+        for speed in BRAKED {
+            let stretch = Stretch {
+                speed,
+                ..traced(drive)
+            };
+            let stops = Some([Stop::Coast, Stop::Brake]);
+            stretch.close_and_stop(drive, &mut arbitrary, stops)?;
+        }
+        fail_calibration(drive, &mut arbitrary);
+        for seed in STIMULI {
+            arbitrary.edges(drive, seed)?;
+        }
         Ok(Self {
             records: all.finish().records,
             traced: short.finish().records,
@@ -138,6 +153,17 @@ impl Inputs {
                 Some(Record::Step(sample)) => Some(sample),
                 _ => None,
             })
+    }
+}
+
+/// A calibration whose offsets are out of their range, which trips the drive at its end.
+fn fail_calibration(drive: &Prepared, called: &mut impl Called) {
+    let inverter = &drive.spec.inverter;
+    called.call(Record::New);
+    called.call(Record::Calibrate);
+    let [a, b, c] = [(inverter.adc_offset + inverter.offset_tolerance + 1) as u16; 3];
+    for _ in 0..1_u32 << inverter.calibration_log2 {
+        called.step(Sample::with_hall([a, b], 1).third_current(c));
     }
 }
 
@@ -294,7 +320,6 @@ fn numbers(answers: &[u8]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::cost::{INTERRUPT_VARIANT, paper_drive};
-    use crate::vectors::Called;
     use hexagen::Fault;
 
     #[test]

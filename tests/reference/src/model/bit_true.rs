@@ -344,17 +344,14 @@ impl<W: Word> BitTrue<W> {
     /// One control period: reads the sample, returns the command for the inverter.
     #[inline]
     pub fn step(&mut self, sample: &Sample) -> AnyCommand {
-        if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
-            self.state.supervisor.trip(fault);
-        }
-        if let Some(watch) = &self.residual
-            && watch.is_over(self.state.residual_count)
-        {
-            self.state.supervisor.trip(Fault::Residual);
-        }
-        if self.state.timing.is_too_fast() {
-            self.state.supervisor.trip(Fault::OverSpeed);
-        }
+        let residual = self.residual.as_ref();
+        let known = if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
+            Some(fault)
+        } else if residual.is_some_and(|watch| watch.is_over(self.state.residual_count)) {
+            Some(Fault::Residual)
+        } else {
+            (self.state.timing.is_too_fast()).then_some(Fault::OverSpeed)
+        };
         let k = &self.k;
         // 1 measure
         let limits = &self.limits;
@@ -379,6 +376,7 @@ impl<W: Word> BitTrue<W> {
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
         let seen = Observation {
+            known,
             adc,
             i: measured,
             sum: shown[0] + shown[1] + shown[2],

@@ -349,16 +349,14 @@ impl Ideal {
 
     /// One control period: reads the sample, returns the exact command.
     pub fn step(&mut self, sample: &Sample) -> Duties {
-        if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
-            self.state.supervisor.trip(fault);
-        }
         let most = f64::from(self.variant.options.residual_periods);
-        if most > 0.0 && self.state.residual_count >= most {
-            self.state.supervisor.trip(Fault::Residual);
-        }
-        if self.state.timing.is_too_fast() {
-            self.state.supervisor.trip(Fault::OverSpeed);
-        }
+        let known = if let Some(fault) = self.bus_watch.as_mut().and_then(BusWatch::age) {
+            Some(fault)
+        } else if most > 0.0 && self.state.residual_count >= most {
+            Some(Fault::Residual)
+        } else {
+            (self.state.timing.is_too_fast()).then_some(Fault::OverSpeed)
+        };
         // 1 measure
         let limits = &self.limits;
         let adc = limits.sensed.of_sensors(sample.adc()).map(f64::from);
@@ -378,6 +376,7 @@ impl Ideal {
         let direction_before = self.state.timing.direction;
         self.state.timing.turn_direction(&event);
         let seen = Observation {
+            known,
             adc,
             i: measured,
             sum: shown.iter().sum(),

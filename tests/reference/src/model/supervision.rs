@@ -310,9 +310,11 @@ impl Limits {
     }
 }
 
-/// The supervisor's inputs of one sample.
+/// The supervisor's inputs of one period.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<W> {
+    /// What no sample shows: of the bus, or found by the law in an earlier period.
+    pub known: Option<Fault>,
     /// ADC counts of the first two sensors and the third phase, as read.
     pub adc: [W; 3],
     /// Phase currents.
@@ -512,14 +514,6 @@ impl<W: Word> Supervisor<W> {
         }
     }
 
-    /// Trips for what no sample shows, unless tripped.
-    pub fn trip(&mut self, fault: Fault) {
-        if self.mode != Mode::Tripped {
-            self.mode = Mode::Tripped;
-            self.fault = Some(fault);
-        }
-    }
-
     /// The sensor that does not show its phase's current in this sample.
     pub fn unread(&self, limits: &Limits) -> Option<usize> {
         match limits.third {
@@ -609,7 +603,9 @@ impl<W: Word> Supervisor<W> {
             .enumerate()
             .filter(|(x, _)| Some(*x) != unread);
         let i_max = greater(greater(seen.i[0].abs(), seen.i[1].abs()), seen.i[2].abs());
-        let found = if read.any(|(_, adc)| *adc == 0.0 || *adc >= limits.adc_max) {
+        let found = if let Some(known) = seen.known {
+            Some(known)
+        } else if read.any(|(_, adc)| *adc == 0.0 || *adc >= limits.adc_max) {
             Some(Fault::AdcRange)
         } else if is_wrong {
             Some(Fault::Hall)

@@ -23,8 +23,8 @@ type Call = (u32, Option<u32>);
 #[derive(Debug)]
 pub struct Search<'a> {
     code: &'a Code<'a>,
-    /// Parts of the names of functions whose calls are left out with the paths through them.
-    without: &'static [&'static str],
+    /// Part of the names of functions whose calls are left out with the paths through them.
+    without: Option<&'static str>,
     measure: Measure,
     known: BTreeMap<Call, Longest>,
     /// Calls from the outermost to this.
@@ -44,7 +44,7 @@ struct Body {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(code: &'a Code<'a>, without: &'static [&'static str], measure: Measure) -> Self {
+    pub fn new(code: &'a Code<'a>, without: Option<&'static str>, measure: Measure) -> Self {
         Self {
             code,
             without,
@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
     /// The longest path of a function that an instruction calls, or jumps to for good.
     fn called(&mut self, at: u32, function: u32) -> Result<Longest, BenchError> {
         let name = self.code.image.name_around(function);
-        if self.without.iter().any(|part| name.contains(part)) {
+        if self.without.is_some_and(|part| name.contains(part)) {
             return Ok(None);
         }
         let length = match bound(name) {

@@ -260,12 +260,12 @@ fn the_far_call_of_risc_v_without_an_offset_is_followed() {
 }
 
 #[test]
-fn a_step_in_control_does_not_rest() {
-    let functions = [("f", 0..12), ("step_at_rest", 12..16)];
+fn a_step_in_control_passes_the_check() {
+    let functions = [("f", 0..12), ("examine", 12..16)];
     let text = "\
 0:\tcmp\tr0, #1
 2:\tbne.n\t8 <f+0x8>
-4:\tbl\tc <step_at_rest>
+4:\tbl\tc <examine>
 8:\tadds\tr0, #1
 a:\tbx\tlr
 c:\tadds\tr0, #1
