@@ -26,7 +26,11 @@ pub struct Limited<'b> {
 struct Free<'b> {
     /// Phase voltages.
     u: Phases<'b, 3>,
-    /// (max + min) / 2 of the three, rounded down.
+    /// max - min of the three.
+    spread: Expr<'b>,
+    /// max + min.
+    extent: Expr<'b>,
+    /// (max + min) / 2, rounded down.
     middle: Expr<'b>,
 }
 
@@ -67,12 +71,14 @@ impl<E> Priority<E> {
     }
 }
 
-/// Fraction bits of the ratio in keep_angle.
-const SCALE_BITS: u32 = 30;
+/// Fraction bits of the ratio in keep_angle: so it is one division of 32 by 16 bits.
+const SCALE_BITS: u32 = 16;
 /// Torque priority needs an EMF of at least V_BUS / 2^5.
 const LEAST_EMF_BITS: u32 = 5;
 /// Fraction bits of the blend towards the nearest point.
-const BLEND_BITS: u32 = 15;
+const BLEND_BITS: u32 = 12;
+/// Bits that products of EMF and voltage lose in it: so the dividend fits 32 bits.
+const BLEND_DROPPED: u32 = 11;
 
 /// The hexagon of voltages that the bus can make.
 #[derive(Clone, Copy, Debug)]
@@ -100,10 +106,13 @@ impl<'b> Hexagon<'b> {
         let [high, low] = u.extremes(["u_max", "u_min"]);
         named! {
             let spread = high - low;
-            let middle_unsat = (high + low) >> 1;
+            let extent = high + low;
+            let middle_unsat = extent >> 1;
         }
         let free = Free {
             u,
+            spread,
+            extent,
             middle: middle_unsat,
         };
         let centred = if self.lifts {
@@ -119,7 +128,7 @@ impl<'b> Hexagon<'b> {
             let saturated = spread.is_above(bus);
         }
         let (inside, inside_centred) = match priority {
-            Priority::Angle => self.keep_angle(l, saturated, u_unsat, spread),
+            Priority::Angle => self.keep_angle(l, saturated, free),
             Priority::Nearest => self.take_nearest(l, saturated, free),
             Priority::Torque(emf) => self.keep_torque(l, saturated, free, emf),
         };
@@ -137,30 +146,38 @@ impl<'b> Hexagon<'b> {
         }
     }
 
+    /// Voltages times bus over spread. The ratio is cut to 16 bits, and so are bus and spread in it; the
+    /// centred legs are clamped, and the phase voltages follow from them.
     fn keep_angle(
         &self,
         l: &Lowering<'b>,
         saturated: Flag<'b>,
-        u: Phases<'b>,
-        spread: Expr<'b>,
+        free: Free<'b>,
     ) -> (Phases<'b>, Phases<'b, 3>) {
         let doc = "Voltage scaled to the edge of the hexagon, at the same angle.";
         l.b.guarded_stage("limit_keep_angle", saturated, true, &[doc]);
-        let bits = SCALE_BITS as i32;
-        l.format(
-            "scale",
-            32,
-            bits,
-            Rounding::Floor,
-            "bus over spread, at most 1",
-        );
         let bus = self.bus.volts;
+        // Without the sign.
+        let dropped = bus.interval().bits().saturating_sub(SCALE_BITS + 1);
+        let meaning = "bus over spread, below 1";
+        l.format("scale", 16, SCALE_BITS as i32, Rounding::Floor, meaning);
+        l.format(
+            "scale_volts",
+            16,
+            l.scale.voltage_bits as i32 - dropped as i32,
+            Rounding::Floor,
+            "bus in the ratio",
+        );
         named! {
-            let scale = bus.divide(SCALE_BITS, spread.max(1), 1 << SCALE_BITS);
-            let u_limited = u.map(|u| within_bus(u.mul_round(scale, SCALE_BITS), bus));
+            let spread_short = (free.spread >> dropped).max(1);
+            let scale = (bus >> dropped).divide(SCALE_BITS, spread_short, (1 << SCALE_BITS) - 1);
+            // Products of it and twice a voltage have the result in their upper word.
+            let scale_long = scale << (31 - SCALE_BITS);
+            let u_scaled = free.u.pair().map(|u| (u << 1).mul_round(scale_long, 32));
+            let middle_scaled = free.extent.mul_round(scale_long, 32);
         }
-        let legs = u_limited.with_c("u_limited");
-        (u_limited, self.centred(l, legs, middle(legs)))
+        let legs = self.centred(u_scaled.with_c("u_scaled"), middle_scaled);
+        (self.without_mean(legs), self.lifted(l, legs))
     }
 
     fn take_nearest(
@@ -178,7 +195,7 @@ impl<'b> Hexagon<'b> {
         }
         let legs = self.nearest(free);
         let u = self.without_mean(legs);
-        (u, self.centred(l, legs, terminal_middle))
+        (u, self.lifted(l, self.centred(legs, terminal_middle)))
     }
 
     fn keep_torque(
@@ -203,7 +220,7 @@ impl<'b> Hexagon<'b> {
         let e = emf();
         let legs = self.torque_priority(l, free, e);
         let u = self.without_mean(legs);
-        (u, self.centred(l, legs, middle(legs)))
+        (u, self.lifted(l, self.centred(legs, middle(legs))))
     }
 
     /// Phase voltages a and b from leg voltages; added to the open stage.
@@ -215,8 +232,8 @@ impl<'b> Hexagon<'b> {
         u_limited
     }
 
-    /// Leg voltages less their middle, within half the bus, lifted; added to the open stage.
-    fn centred(&self, l: &Lowering<'b>, legs: Phases<'b, 3>, middle: Expr<'b>) -> Phases<'b, 3> {
+    /// Leg voltages less their middle, within half the bus; added to the open stage.
+    fn centred(&self, legs: Phases<'b, 3>, middle: Expr<'b>) -> Phases<'b, 3> {
         named! {
             let centred_max = (self.bus.volts + 1) >> 1;
             let centred_min = -centred_max;
@@ -225,15 +242,25 @@ impl<'b> Hexagon<'b> {
         named! {
             let centred_limited = legs.map(|leg| {
                 let centred = leg - middle;
-                let held = if least_top.contains(centred.interval()) {
+                if least_top.contains(centred.interval()) {
                     centred
                 } else {
                     centred.max(centred_min).min(centred_max)
-                };
-                if self.lifts { held + half_period(l) } else { held }
+                }
             });
         }
         centred_limited
+    }
+
+    /// Centred leg voltages, lifted where the hexagon's are; added to the open stage.
+    fn lifted(&self, l: &Lowering<'b>, legs: Phases<'b, 3>) -> Phases<'b, 3> {
+        if !self.lifts {
+            return legs;
+        }
+        named! {
+            let lifted_limited = legs.map(|leg| leg + half_period(l));
+        }
+        lifted_limited
     }
 
     /// Terminal voltages of the nearest point; added to the open stage.
@@ -375,7 +402,8 @@ impl<'b> Asked<'b> {
         let kept = self.with_component(component.min(reachable), frame, bus);
         let past = (component - reachable).max(0);
         named! {
-            let blend = past.divide(BLEND_BITS, (reachable >> 1).max(1), 1 << BLEND_BITS);
+            let half_reachable = (reachable >> (1 + BLEND_DROPPED)).max(1);
+            let blend = (past >> BLEND_DROPPED).divide(BLEND_BITS, half_reachable, 1 << BLEND_BITS);
         }
         [0, 1].map(|k| kept[k] + (self.near[k] - kept[k]).mul_round(blend, BLEND_BITS))
     }
@@ -417,10 +445,11 @@ fn middle(legs: Phases<'_, 3>) -> Expr<'_> {
     limited_middle
 }
 
-/// A value that never exceeds the bus, clamped so that the intervals show it.
+/// A value that never exceeds the bus, clamped where the intervals do not show that it never exceeds the
+/// greatest one.
 pub(super) fn within_bus<'b>(value: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
-    let least_bus = Interval::symmetric(bus.interval().low);
-    if least_bus.contains(value.interval()) {
+    let greatest_bus = Interval::symmetric(bus.interval().high);
+    if greatest_bus.contains(value.interval()) {
         return value;
     }
     value.max(-bus).min(bus)

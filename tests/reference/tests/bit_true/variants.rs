@@ -474,7 +474,11 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_little", shift(200.0 * motor.resistance / gain)),
         ("k_free", 30),
         ("ratio", 24),
-        ("scale", 30),
+        ("scale", 16),
+        (
+            "scale_volts",
+            f_v - ((bus / w * scale).log2().floor() as i32 - 15).max(0),
+        ),
         ("shape", shift(peak)),
         ("stretch", 31),
         ("flux", shift(linkage)),

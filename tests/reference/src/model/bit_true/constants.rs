@@ -74,7 +74,7 @@ pub struct Constants<W> {
     /// Where the places of the Hall sensors are learnt.
     pub offset: Option<Offset<W>>,
     pub ratio_bits: u32,
-    pub scale_bits: u32,
+    pub scale_dropped: u32,
     pub emf_product: Shift,
     pub bus: Option<BusWords<W>>,
     pub flux: Table<W>,
@@ -285,7 +285,7 @@ impl<W: Word> Constants<W> {
                 (floating && variant.applied())
                     || variant.modulated == Switch::On
                     || variant.has_intervals()
-                    || saturation.is_some_and(|rule| rule != Saturation::KeepAngle)
+                    || saturation.is_some()
                     || spec.spares_highest()?,
                 "k_third",
                 1.0 / 3.0,
@@ -311,7 +311,11 @@ impl<W: Word> Constants<W> {
             },
             // Only pulses narrower than the period depend on the measured bus.
             ratio_bits: scale.bits_if(bus.is_some() && variant.pulsed(), "ratio")?,
-            scale_bits: scale.bits_if(saturation == Some(Saturation::KeepAngle), "scale")?,
+            scale_dropped: if saturation == Some(Saturation::KeepAngle) {
+                (-scale.extra_bits("scale_volts")?).max(0) as u32
+            } else {
+                0
+            },
             emf_product: scale.product_if(
                 saturation == Some(Saturation::TorquePriority),
                 "emf_product",

@@ -9,14 +9,18 @@ use crate::exact::{
 use crate::model::Reach;
 
 /// Fraction bits of the blend between torque priority and the nearest point.
-const BLEND_BITS: u32 = 15;
+const BLEND_BITS: u32 = 12;
 /// Torque priority blends over `p_max >> BLEND_SHARE` beyond its limit.
 const BLEND_SHARE: u32 = 1;
 /// The lighter weight is at least the largest EMF `>> LIGHT_SHARE`.
 const LIGHT_SHARE: u32 = 2;
 /// Torque priority needs an EMF of at least the bus `>> LEAST_EMF`.
 const LEAST_EMF: u32 = 5;
-const BLEND_ONE: f64 = 32_768.0;
+const BLEND_ONE: f64 = 4096.0;
+/// Bits that the products lose in it.
+const BLEND_DROPPED: u32 = 11;
+/// Fraction bits of the ratio of bus and spread.
+const SCALE_BITS: u32 = 16;
 /// The phase behind each.
 const NEXT: [usize; 3] = [1, 2, 0];
 
@@ -24,22 +28,31 @@ const NEXT: [usize; 3] = [1, 2, 0];
 pub struct Limited<W> {
     /// Of phases a, b.
     pub u: [W; 2],
-    /// Of the legs, against any common point.
+    /// Of the legs, about the middle of the bus.
     pub legs: [W; 3],
     pub reach: Reach,
 }
 
-impl<W: Word> Limited<W> {
-    fn of_phases(u: [W; 2], reach: Reach) -> Self {
-        let legs = [u[0], u[1], -(u[0] + u[1])];
-        Self { u, legs, reach }
-    }
+/// Leg voltages less a middle, within half the bus.
+#[inline]
+fn centred<W: Word>(v_bus: W, legs: [W; 3], middle: W) -> [W; 3] {
+    let half = halve(v_bus + 1.0);
+    all_three(|x| within(legs[x] - middle, -half, half))
+}
 
-    fn of_legs(k: &Constants<W>, legs: [W; 3], reach: Reach) -> Self {
-        let mean = k.k_third.mul(legs[0] + legs[1] + legs[2]);
-        let u = [legs[0] - mean, legs[1] - mean];
-        Self { u, legs, reach }
-    }
+/// The same less their own middle.
+#[inline]
+fn about_middle<W: Word>(v_bus: W, legs: [W; 3]) -> [W; 3] {
+    let [a, b, c] = legs;
+    let middle = halve(greater(greater(a, b), c) + lesser(lesser(a, b), c));
+    centred(v_bus, legs, middle)
+}
+
+/// Phase voltages a, b of leg voltages.
+#[inline]
+fn phases<W: Word>(k: &Constants<W>, legs: [W; 3]) -> [W; 2] {
+    let mean = k.k_third.mul(legs[0] + legs[1] + legs[2]);
+    [legs[0] - mean, legs[1] - mean]
 }
 
 /// Limits phase voltages a, b; `e` is the EMF of phases a, b.
@@ -55,30 +68,37 @@ pub fn limit<W: Word>(
     let max = greater(greater(u[0], u[1]), u_c);
     let min = lesser(lesser(u[0], u[1]), u_c);
     let spread = max - min;
+    let all = [u[0], u[1], u_c];
     if spread <= v_bus {
-        return Limited::of_phases(u, Reach::Inside);
+        let legs = about_middle(v_bus, all);
+        let reach = Reach::Inside;
+        return Limited { u, legs, reach };
     }
-    match rule {
+    let (legs, reach) = match rule {
         Saturation::KeepAngle => {
+            let short = |volts| floor_shift(volts, k.scale_dropped);
+            let most = word(pow2(SCALE_BITS as i32) - 1.0);
             // The demand exceeds the bus.
-            let spread = spread.known(1.0, WHOLE);
-            let scale = Coefficient::new(
-                v_bus.divide(k.scale_bits, spread, word(pow2(k.scale_bits as i32))),
-                k.scale_bits,
-            );
-            Limited::of_phases(both(|x| scale.mul(u[x])), Reach::Outside)
+            let ratio = short(v_bus).divide(SCALE_BITS, greater(short(spread), 1.0), most);
+            let scaled = |bits| Coefficient::new(ratio, bits);
+            let [a, b] = both(|x| scaled(SCALE_BITS).mul(u[x]));
+            // That of half the sum.
+            let middle = scaled(SCALE_BITS + 1).mul(max + min);
+            let legs = centred(v_bus, [a, b, -(a + b)], middle);
+            let u = phases(k, legs);
+            let reach = Reach::Outside;
+            return Limited { u, legs, reach };
         }
-        Saturation::Nearest => {
-            let near = nearest(v_bus, [u[0], u[1], u_c], max, min);
-            Limited::of_legs(k, near, Reach::Outside)
-        }
+        Saturation::Nearest => (nearest(v_bus, all, max, min), Reach::Outside),
         Saturation::TorquePriority => {
-            let near = nearest(v_bus, [u[0], u[1], u_c], max, min);
+            let near = nearest(v_bus, all, max, min);
             let f = [e[0], e[1], -(e[0] + e[1])];
-            let (legs, reach) = torque_priority(k, v_bus, [u[0], u[1], u_c], f, near);
-            Limited::of_legs(k, legs, reach)
+            torque_priority(k, v_bus, all, f, near)
         }
-    }
+    };
+    let u = phases(k, legs);
+    let legs = about_middle(v_bus, legs);
+    Limited { u, legs, reach }
 }
 
 /// The terminal voltages of the nearest point of the hexagon.
@@ -137,13 +157,13 @@ fn torque_priority<W: Word>(
     let mut reach = Reach::Outside;
     if p > p_max {
         reach = Reach::PastReach;
-        let share = greater(floor_shift(p_max, BLEND_SHARE), 1.0);
+        let share = greater(floor_shift(p_max, BLEND_SHARE + BLEND_DROPPED), 1.0);
         // Implied by the condition.
-        let past = (p - p_max).known(0.0, WHOLE);
+        let past = floor_shift((p - p_max).known(0.0, WHOLE), BLEND_DROPPED);
         let blend = lesser(floor(past * BLEND_ONE / share), BLEND_ONE);
-        let mul15 = Shift::new(BLEND_BITS);
-        to_x += mul15.round_product(blend, near_x - to_x);
-        to_y += mul15.round_product(blend, near_y - to_y);
+        let mul12 = Shift::new(BLEND_BITS);
+        to_x += mul12.round_product(blend, near_x - to_x);
+        to_y += mul12.round_product(blend, near_y - to_y);
     }
     let mut legs = [word(0.0); 3];
     legs[x] = -sign * to_x;

@@ -1,7 +1,7 @@
 //! The common mode of three pulsed legs (sections 10 and 11).
 
 use super::Inputs;
-use crate::exact::{Coefficient, Word, all_three, both, greater, halve, lesser, within, word};
+use crate::exact::{Coefficient, Word, all_three, both, greater, lesser, word};
 use crate::model::bit_true::constants::Constants;
 use crate::model::bit_true::limit::{self, Limited};
 use crate::model::bit_true::scale::Scale;
@@ -97,28 +97,22 @@ impl<W: Word> CommonModeRule<W> {
     #[inline]
     pub fn limited(&self, now: &Inputs<W>, rule: Saturation, u: [W; 2], e: [W; 2]) -> Limited<W> {
         let limited = limit::limit(rule, now.k, self.reach(now.v_bus), u, e);
-        self.readable(now.k, now.v_bus, &limited)
+        self.readable(now.k, now.v_bus, limited)
     }
 
-    /// Legs about the middle of the bus; where the highest need not be read, the second highest no higher than its
-    /// sensor can be.
+    /// Where the highest leg need not be read, the second highest no higher than its sensor can be.
     #[inline]
-    fn readable(&self, k: &Constants<W>, v_bus: W, limited: &Limited<W>) -> Limited<W> {
-        let &Limited { u, legs, reach } = limited;
-        let [a, b, c] = legs;
-        let middle = halve(greater(greater(a, b), c) + lesser(lesser(a, b), c));
-        let half = halve(self.reach(v_bus) + 1.0);
-        let legs = all_three(|x| within(legs[x] - middle, -half, half));
-        let unchanged = Limited { u, legs, reach };
+    fn readable(&self, k: &Constants<W>, v_bus: W, limited: Limited<W>) -> Limited<W> {
         let Some(v_second) = &self.second else {
-            return unchanged;
+            return limited;
         };
+        let Limited { u, legs, reach } = limited;
         let [a, b, c] = legs;
         let (high, low) = (greater(greater(a, b), c), lesser(lesser(a, b), c));
         let second = a + b + c - high - low;
         let most = low + v_second.at(v_bus);
         if second <= most {
-            return unchanged;
+            return limited;
         }
         let highest = [0, 1, 2].into_iter().find(|&x| legs[x] == high);
         let lowered = all_three(|x| {

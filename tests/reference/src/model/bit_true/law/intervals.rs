@@ -2,7 +2,7 @@
 
 use super::common_mode::CommonModeRule;
 use super::{Command, Inputs, pulses};
-use crate::exact::{Word, all_three, both, greater, halve, lesser, within, word};
+use crate::exact::{Word, all_three, both, greater, halve, lesser, word};
 use crate::model::Reach;
 use crate::model::bit_true::limit::{self, Limited};
 use crate::model::bit_true::scale::Scale;
@@ -73,10 +73,6 @@ impl<W: Word> Table2<W> {
             legs,
             reach,
         } = limited;
-        let [a, b, c] = legs;
-        let middle = halve(greater(greater(a, b), c) + lesser(lesser(a, b), c));
-        let half = halve(bus + 1.0);
-        let legs = all_three(|x| within(legs[x] - middle, -half, half));
         let (u, vectors, zero) = if pairing {
             let u = both(|x| now.k.k_third.mul(legs[x] - legs[x + 1]));
             (u, of_pairs(u), self.zero_of_pair(now.sector_eff))
