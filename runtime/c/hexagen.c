@@ -1,7 +1,7 @@
 /* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
-#if HEXAGEN_ABI != 5
+#if HEXAGEN_ABI != 6
 #error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
 #endif
 
@@ -37,9 +37,10 @@ int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, ui
 {
     uint64_t dividend = (uint64_t)numerator << shift;
     uint32_t divisor = (uint32_t)denominator;
+    const bool is_one_digit = limit <= INT32_C(0xffff);
     uint32_t rest;
     uint32_t quotient;
-    if ((dividend >> 32) >= divisor) {
+    if ((dividend >> (is_one_digit ? 16 : 32)) >= divisor) {
         return limit;
     }
     if (divisor < UINT32_C(0x10000)) {
@@ -62,8 +63,13 @@ int32_t hexagen_divide(int32_t numerator, int32_t denominator, int32_t limit, ui
         divisor <<= 1;
         dividend <<= 1;
     }
-    rest = (uint32_t)(dividend >> 32);
-    quotient = divide_digit(&rest, (uint32_t)(dividend >> 16) & UINT32_C(0xffff), divisor) << 16;
+    if (is_one_digit) {
+        rest = (uint32_t)(dividend >> 16);
+        quotient = 0U;
+    } else {
+        rest = (uint32_t)(dividend >> 32);
+        quotient = divide_digit(&rest, (uint32_t)(dividend >> 16) & UINT32_C(0xffff), divisor) << 16;
+    }
     quotient |= divide_digit(&rest, (uint32_t)dividend & UINT32_C(0xffff), divisor);
     return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;
 }

@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /** Version of this interface. Drives refuse to compile with a header of another version. */
-#define HEXAGEN_ABI 5
+#define HEXAGEN_ABI 6
 
 /** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -1003,8 +1003,9 @@ static inline bool hexagen_watch_stall(hexagen_supervisor *supervisor, const hex
 }
 
 /**
- * Whether the period is fit for control, with the checked sample. False if the drive is starting up,
- * off on purpose or tripped, or the sample has a fault; then call hexagen_examine with the same sample. `set_point` is 0 if no current is demanded.
+ * Whether the period is fit for control, with the checked sample. False if the drive is starting
+ * up, off on purpose or tripped, or the sample has a fault; then call hexagen_examine with the same
+ * sample. `set_point` is 0 if no current is demanded.
  */
 static inline bool hexagen_check(hexagen_supervisor *supervisor, const hexagen_limits *limits,
     const hexagen_sample *sample, const volatile int32_t *set_point, hexagen_checked *checked)

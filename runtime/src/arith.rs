@@ -57,8 +57,8 @@ pub fn mul_round(coefficient: Word, signal: Word, shift: u32) -> Word {
     Word(product.wrapping_add(half).wrapping_shr(shift) as i32)
 }
 
-/// [`mul_round`] for cores without a carry flag, where a 64-bit sum is slow; `coefficient` is a
-/// constant there.
+/// [`mul_round`] for cores without a carry flag, where a 64-bit sum is slow. Which of the two ways it takes is
+/// decided by the compiler where `coefficient` is a constant.
 #[doc(hidden)]
 #[inline(always)]
 #[must_use]
@@ -135,16 +135,19 @@ pub fn divide(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Wo
 }
 
 /// [`divide`] for cores with a 32-bit divider, whose library takes hundreds of instructions for 64
-/// bits: two digits of 16 bits (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm
-/// D).
+/// bits: two digits of 16 bits, or one where the limit needs no more (Knuth, The Art of Computer
+/// Programming, volume 2, 4.3.1, algorithm D).
 #[doc(hidden)]
 #[inline(always)]
 #[must_use]
 pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: u32) -> Word {
     let denominator = denominator.0.max(1) as u32;
     let numerator = (numerator.0 as u32 as u64).wrapping_shl(shift);
-    if (numerator >> 32) as u32 >= denominator {
-        // The quotient is 2^32 or more.
+    // The limit is a constant in emitted code, so that this is decided there.
+    let is_one_digit = limit.0 <= 0xffff;
+    let above = numerator.wrapping_shr(if is_one_digit { 16 } else { 32 });
+    if above >= u64::from(denominator) {
+        // The quotient is 2^16 or more, or 2^32.
         return limit;
     }
     let zeros = denominator.leading_zeros();
@@ -153,7 +156,11 @@ pub fn divide_by_digits(numerator: Word, denominator: Word, limit: Word, shift: 
         numerator.wrapping_shl(zeros),
         denominator.wrapping_shl(zeros),
     );
-    let (high, rest) = divide_digit((dividend >> 32) as u32, (dividend >> 16) as u16, divisor);
+    let (high, rest) = if is_one_digit {
+        (0, (dividend >> 16) as u32)
+    } else {
+        divide_digit((dividend >> 32) as u32, (dividend >> 16) as u16, divisor)
+    };
     let (low, _) = divide_digit(rest, dividend as u16, divisor);
     let quotient = high << 16 | low;
     Word(quotient.min(limit.0 as u32) as i32)

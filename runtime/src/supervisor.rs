@@ -576,10 +576,11 @@ const fn before_control(periods: u16) -> Mode {
 /// Count of bridged samples at which counting ends.
 pub(crate) const MOST_GLITCHES: u16 = 0x7fff;
 
-/// What a drive does in a period that passes no check.
+/// What a drive does in a period that is not fit for control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
 pub enum Unfit {
-    /// It rests, all legs in one state; the first fault that was found.
+    /// It rests, all legs in one state; for this fault of the period, the first of several, or without one.
     Rest(Option<Fault>),
     /// It controls after all: the sample's disturbed Hall code is bridged.
     Control,
@@ -800,14 +801,16 @@ impl Supervisor {
     }
 
     /// What the drive does in a period that is not fit for control: one whose [`check`](Self::check)
-    /// gave no sample, or with the fault `known` already, which no sample shows. Bridges a disturbed Hall
-    /// code, brakes, or says that it rests; then call [`rest`](Self::rest) with the fault. In the sample,
+    /// gave no sample, or with the fault `known` already, which no sample shows. The check is called in
+    /// any case, since it follows the sensors; with a known fault its sample is not used. Bridges a
+    /// disturbed Hall code, brakes, or says that it rests; then call [`rest`](Self::rest) with the fault. In the sample,
     /// counts are clamped to the ADC's range, the current of a phase that is not read to that of one that
     /// is; a Hall code that is bridged is the last one, and another that no sensors give is 0.
     ///
     /// It is apart from [`rest`](Self::rest), so that no way leads from a trip or a start-up to control,
     /// and the longest computation time is that of one of them.
     #[inline(always)]
+    #[must_use]
     pub fn examine(
         &mut self,
         limits: &Limits,
@@ -872,6 +875,7 @@ impl Supervisor {
     /// A period without control, which [`examine`](Self::examine) found to be one: trips on the fault, or
     /// continues start-up. Returns the state of all legs, and what trips the drive in this period.
     #[inline(always)]
+    #[must_use]
     pub fn rest(
         &mut self,
         limits: &Limits,

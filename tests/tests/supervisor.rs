@@ -1,7 +1,7 @@
 //! The runtime's supervisor, alone, equals the bit-true model's supervision, in streams and from
 //! arbitrary states, in all of its modes and faults.
 
-use hexagen::{Command, Fault, Limits, Sample, Sensors, Supervisor, Unfit};
+use hexagen::{Command, Fault, Limits, Mode, Sample, Sensors, Supervisor, Unfit};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::{formats, limits, sensors};
 use hexagen_reference::verify::{Action, Context, Stimulus};
@@ -218,7 +218,7 @@ impl Pair {
     #[track_caller]
     fn step(&mut self, sample: &Sample) {
         let (limits, sensors) = (&self.limits, &self.sensors);
-        let before = self.supervisor.words()[1];
+        let [mode_before, before, ..] = self.supervisor.words();
         let demanded = self.model.set_point_words()[0];
         let checked = self
             .supervisor
@@ -233,7 +233,15 @@ impl Pair {
         self.command = self.model.step(sample);
         self.model.state_words(&mut self.words);
         let legs = match unfit {
-            Unfit::Rest(fault) => Some(self.supervisor.rest(limits, sensors, sample, fault).0),
+            Unfit::Rest(fault) => {
+                let (legs, tripped) = self.supervisor.rest(limits, sensors, sample, fault);
+                // A trip is told in its period alone.
+                let [mode, fault, ..] = self.supervisor.words();
+                let trips = mode != mode_before && Mode::from_number(mode) == Mode::Tripped;
+                let expected = Fault::from_number(fault).filter(|_| trips);
+                assert_eq!(tripped, expected, "{sample:?}");
+                Some(legs)
+            }
             Unfit::Control | Unfit::Against(_) => {
                 self.supervisor
                     .follow_command(sensors, Command::on(self.command));

@@ -337,8 +337,9 @@ proptest! {
         let mut supervisor = Supervisor::new(&limits, &sensors);
         supervisor.set_words(words);
         for (sample, is_demanded, call) in samples {
-            if supervisor.check(&limits, &sensors, &sample, || is_demanded).is_none() {
-                let known = (call == 6).then_some(Fault::OverSpeed);
+            let known = (call == 6).then_some(Fault::OverSpeed);
+            let checked = supervisor.check(&limits, &sensors, &sample, || is_demanded);
+            if checked.is_none() || known.is_some() {
                 let (_, unfit) = black_box(supervisor.examine(&limits, &sensors, &sample, known));
                 if let Unfit::Rest(fault) = unfit {
                     black_box(supervisor.rest(&limits, &sensors, &sample, fault));

@@ -71,14 +71,12 @@ impl<E> Priority<E> {
     }
 }
 
-/// Fraction bits of the ratio in keep_angle: so it is one division of 32 by 16 bits.
+/// Fraction bits of the ratio in keep_angle, and bits of the bus in it: so it is one division of 32 bits.
 const SCALE_BITS: u32 = 16;
 /// Torque priority needs an EMF of at least V_BUS / 2^5.
 const LEAST_EMF_BITS: u32 = 5;
 /// Fraction bits of the blend towards the nearest point.
-const BLEND_BITS: u32 = 12;
-/// Bits that products of EMF and voltage lose in it: so the dividend fits 32 bits.
-const BLEND_DROPPED: u32 = 11;
+const BLEND_BITS: u32 = 15;
 
 /// The hexagon of voltages that the bus can make.
 #[derive(Clone, Copy, Debug)]
@@ -146,8 +144,8 @@ impl<'b> Hexagon<'b> {
         }
     }
 
-    /// Voltages times bus over spread. The ratio is cut to 16 bits, and so are bus and spread in it; the
-    /// centred legs are clamped, and the phase voltages follow from them.
+    /// Voltages times bus over spread, a ratio of 16 bits. The centred legs are clamped, and the phase
+    /// voltages follow from them.
     fn keep_angle(
         &self,
         l: &Lowering<'b>,
@@ -160,10 +158,10 @@ impl<'b> Hexagon<'b> {
         // Without the sign.
         let dropped = bus.interval().bits().saturating_sub(SCALE_BITS + 1);
         let meaning = "bus over spread, below 1";
-        l.format("scale", 16, SCALE_BITS as i32, Rounding::Floor, meaning);
+        l.format("scale", 32, SCALE_BITS as i32, Rounding::Floor, meaning);
         l.format(
             "scale_volts",
-            16,
+            32,
             l.scale.voltage_bits as i32 - dropped as i32,
             Rounding::Floor,
             "bus in the ratio",
@@ -402,8 +400,7 @@ impl<'b> Asked<'b> {
         let kept = self.with_component(component.min(reachable), frame, bus);
         let past = (component - reachable).max(0);
         named! {
-            let half_reachable = (reachable >> (1 + BLEND_DROPPED)).max(1);
-            let blend = (past >> BLEND_DROPPED).divide(BLEND_BITS, half_reachable, 1 << BLEND_BITS);
+            let blend = past.divide(BLEND_BITS, (reachable >> 1).max(1), 1 << BLEND_BITS);
         }
         [0, 1].map(|k| kept[k] + (self.near[k] - kept[k]).mul_round(blend, BLEND_BITS))
     }
@@ -445,8 +442,8 @@ fn middle(legs: Phases<'_, 3>) -> Expr<'_> {
     limited_middle
 }
 
-/// A value that never exceeds the bus, clamped where the intervals do not show that it never exceeds the
-/// greatest one.
+/// A value that never exceeds the bus, as the caller guarantees: the clamp only tells the intervals that it
+/// never exceeds the greatest bus.
 pub(super) fn within_bus<'b>(value: Expr<'b>, bus: Expr<'b>) -> Expr<'b> {
     let greatest_bus = Interval::symmetric(bus.interval().high);
     if greatest_bus.contains(value.interval()) {

@@ -61,6 +61,8 @@ pub struct Chip {
 pub struct Estimate {
     /// Weights of [`Work`].
     pub weights: Work,
+    /// The least that any step takes: that of one at rest, whose law computes little.
+    pub least: f64,
     /// Largest error of a counted drive by the estimate fitted to all others, as a part of the
     /// estimate.
     pub errors: Errors,
@@ -80,9 +82,10 @@ pub struct Errors {
 }
 
 impl Estimate {
-    const fn of(weights: Work, [usual, learning, intervals]: [f64; 3]) -> Self {
+    const fn of(weights: Work, least: f64, [usual, learning, intervals]: [f64; 3]) -> Self {
         Self {
             weights,
+            least,
             errors: Errors {
                 usual,
                 learning,
@@ -114,10 +117,11 @@ impl Peculiarity {
     }
 }
 
-/// The estimate of these operations by these weights.
-pub fn weighed(weights: &Work, work: &Work) -> f64 {
+/// The estimate of these operations by these weights, at least `least`.
+pub fn weighed(weights: &Work, least: f64, work: &Work) -> f64 {
     let parts = weights.iter().zip(work);
-    parts.map(|(weight, count)| weight * count).sum()
+    let sum: f64 = parts.map(|(weight, count)| weight * count).sum();
+    sum.max(least)
 }
 
 /// What an estimate weighs: one step, state words, additions with comparisons, products of more
@@ -411,9 +415,9 @@ impl Chip {
     }
 
     fn estimated(&self, work: &Times<Work>) -> Times<u32> {
-        self.estimates
-            .zip(*work)
-            .map(|(estimate, work)| weighed(&estimate.weights, &work).round() as u32)
+        self.estimates.zip(*work).map(|(estimate, work)| {
+            weighed(&estimate.weights, estimate.least, &work).round() as u32
+        })
     }
 }
 
@@ -467,7 +471,10 @@ mod tests {
         clocks_of_waits: &[24e6, 36e6, 48e6],
         compiler: "rustc",
         in_c: Times::of([2.0; FIGURES]),
-        estimates: Times::of([Estimate::of(WEIGHTS, [0.1, 0.2, 0.3]); FIGURES]),
+        estimates: Times {
+            any: Estimate::of(WEIGHTS, 250.0, [0.1, 0.2, 0.3]),
+            ..Times::of([Estimate::of(WEIGHTS, 0.0, [0.1, 0.2, 0.3]); FIGURES])
+        },
         counted: &COUNTED,
     };
 
@@ -477,6 +484,7 @@ mod tests {
         let normal = 100 + 2 * 2;
         assert_eq!(times.normal, normal);
         assert_eq!([times.control, times.any_cycles], [normal + 7; 2]);
+        assert_eq!(times.any, 250, "a rest takes longer");
     }
 
     #[test]

@@ -103,8 +103,18 @@ fn primitives_match_their_comments() {
         ),
         (
             "divide(",
-            "(dividend >> 32) >= divisor",
-            "(dividend >> 32) > divisor",
+            "(is_one_digit ? 16 : 32)) >= divisor",
+            "(is_one_digit ? 16 : 32)) > divisor",
+        ),
+        (
+            "divide(",
+            "limit <= INT32_C(0xffff)",
+            "limit <= INT32_C(0x1ffff)",
+        ),
+        (
+            "divide(",
+            "rest = (uint32_t)(dividend >> 16);",
+            "rest = (uint32_t)(dividend >> 17);",
         ),
         ("divide(", "        rest += top;\n", ""),
         (
@@ -227,10 +237,26 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
             "if (true)",
         ),
         (
-            "rested.leg ==",
-            "if (supervisor->mode == HEXAGEN_MODE_PRECHARGE) {\n        rested",
-            "if (supervisor->mode == HEXAGEN_MODE_CALIBRATE) {\n        rested",
+            "leg",
+            "if (supervisor->mode == HEXAGEN_MODE_PRECHARGE\n",
+            "if (supervisor->mode == HEXAGEN_MODE_CALIBRATE\n",
         ),
+        (
+            "line",
+            "supervisor->mode == HEXAGEN_MODE_BRAKE && supervisor->countdown == 0U)",
+            "false)",
+        ),
+        (
+            "line",
+            "supervisor->mode == HEXAGEN_MODE_BRAKE && supervisor->countdown == 0U)",
+            "supervisor->mode == HEXAGEN_MODE_BRAKE)",
+        ),
+        (
+            "line",
+            "hexagen_unfit unfit = { false, false, 0, known };",
+            "hexagen_unfit unfit = { false, false, 0, HEXAGEN_FAULT_NONE };",
+        ),
+        ("line", "if (known == HEXAGEN_FAULT_NONE) {", "if (true) {"),
         ("line", "sector + 1U);", "sector + 2U);"),
         ("line", "follows(now, before) ? -1 : 0", "-1"),
         (
@@ -268,8 +294,8 @@ fn currents_of_every_count_lie_in_their_range_and_every_fault_trips() {
         ("line", "countdown = limits->start_periods", "countdown = 1"),
         (
             "line",
-            "if (supervisor->countdown != 0U) {\n        return",
-            "if (false) {\n        return",
+            "return supervisor->countdown == 0U && !is_slow",
+            "return !is_slow",
         ),
         ("line", "(void)is_last(supervisor);", ""),
         (

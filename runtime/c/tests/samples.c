@@ -291,7 +291,9 @@ static hexagen_fault calibrates(uint16_t count_a, uint16_t count_b)
     for (unsigned period = 0; period < 17; period++) {
         hexagen_checked checked;
         if (!hexagen_check(&supervisor, &close, &sample, &set_point, &checked)) {
-            (void)hexagen_rest(&supervisor, &close, &sample, &checked);
+            const hexagen_unfit unfit
+                = hexagen_examine(&supervisor, &close, &sample, HEXAGEN_FAULT_NONE, &checked);
+            (void)hexagen_rest(&supervisor, &close, &sample, unfit.fault);
         }
     }
     return supervisor.fault;

@@ -408,3 +408,37 @@ impl Called for Recorder<'_> {
         command
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_record_is_read_as_it_was_written() {
+        let sample = Sample::with_hall([17, 4095], 5).hall_ticks(54_321);
+        for record in [
+            Record::New,
+            Record::Step(sample),
+            Record::SetCurrent(-5),
+            Record::SetTorque(i32::MIN),
+            Record::SetBus(4000),
+            Record::Reset,
+            Record::Calibrate,
+            Record::Precharge,
+            Record::SetSpeed(65_537),
+            Record::Stop(Stop::Coast),
+            Record::Stop(Stop::Brake),
+            Record::Stop(Stop::Resume),
+            Record::SetStateWord {
+                index: 200,
+                value: -1,
+            },
+        ] {
+            assert_eq!(Record::decode(record.encode()), Some(record));
+        }
+        let [_, rest @ ..] = Record::New.encode();
+        let operation = |number: u8| [&[number][..], &rest[..]].concat();
+        let unknown = operation(11).try_into().expect("a record");
+        assert_eq!(Record::decode(unknown), None);
+    }
+}

@@ -214,9 +214,9 @@ impl Drive<'_> {
         };
         let _ = write!(
             body,
-            "{INDENT}if (unfit.is_braking) {{\n{inner}{demand};\n{INDENT}}}\n\
-             {INDENT}if (unfit.is_controlled) {{\n\
-             {inner}drive->status = hexagen_status_word(&drive->supervisor);\n{INDENT}}}\n"
+            "{INDENT}if (unfit.is_controlled) {{\n\
+             {inner}drive->status = hexagen_status_word(&drive->supervisor);\n{INDENT}}}\n\
+             {INDENT}if (unfit.is_braking) {{\n{inner}{demand};\n{INDENT}}}\n"
         );
         body.push_str(&lines(&["return unfit;"]));
         let told = "A period that is not fit for control. The drive controls nevertheless to brake a fast rotor, and where a disturbed Hall code is bridged.";

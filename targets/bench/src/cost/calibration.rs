@@ -52,11 +52,25 @@ struct Point {
     time: f64,
 }
 
-/// Weights, and the errors that they are told with.
+/// What a figure is estimated by: weights, and the least that it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Line {
+    weights: Work,
+    least: f64,
+}
+
+/// A line, and the errors that it is told with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fit {
-    weights: Work,
+    line: Line,
     errors: Errors,
+}
+
+impl Line {
+    /// Relative error of a point's estimate.
+    fn off(&self, point: &Point) -> f64 {
+        (point.time / weighed(&self.weights, self.least, &point.work) - 1.0).abs()
+    }
 }
 
 impl Calibration {
@@ -177,11 +191,12 @@ fn estimate(fit: Fit) -> String {
         learning,
         intervals,
     } = fit.errors;
-    let [weights, errors] = [&fit.weights[..], &[usual, learning, intervals]].map(|numbers| {
+    let [weights, errors] = [&fit.line.weights[..], &[usual, learning, intervals]].map(|numbers| {
         let numbers: Vec<String> = numbers.iter().copied().map(number).collect();
         numbers.join(", ")
     });
-    format!("Estimate::of([{weights}], [{errors}])")
+    let least = number(fit.line.least);
+    format!("Estimate::of([{weights}], {least}, [{errors}])")
 }
 
 /// The times of each specification; of drives with one specification the longer.
@@ -263,10 +278,12 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
         figures.map(point).into_array()
     });
     let points: Vec<[Point; FIGURES]> = points.collect();
+    let of = |figure: usize| -> Vec<Point> { points.iter().map(|point| point[figure]).collect() };
     let mut fits = vec![];
     for figure in 0..FIGURES {
-        let points: Vec<Point> = points.iter().map(|point| point[figure]).collect();
-        fits.push(fit(&points)?);
+        // Those of any step lie as far behind those of a step in control.
+        let in_control = figure.checked_sub(ANY - CONTROL).filter(|_| figure >= ANY);
+        fits.push(fit(&of(figure), in_control.map(of).as_deref())?);
     }
     let fits: [Fit; FIGURES] = fits
         .try_into()
@@ -274,27 +291,68 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
     Ok(Times::of(fits))
 }
 
+/// The first figure of a step in control, and of any step.
+const CONTROL: usize = 1;
+const ANY: usize = 4;
+
 /// Drives whose commands have intervals are not fitted: which of their steps limit the voltage depends on the
-/// drive, and the operations do not tell it.
-fn fit(points: &[Point]) -> Result<Fit, BenchError> {
-    let is_fitted = |point: &&Point| point.peculiarity != Peculiarity::Intervals;
-    let fitted: Vec<Point> = points.iter().filter(is_fitted).copied().collect();
-    let off =
-        |weights: &Work, point: &Point| (point.time / weighed(weights, &point.work) - 1.0).abs();
+/// drive, and the operations do not tell it. `in_control`: the same drives' steps in control, beyond which
+/// steps of this figure go.
+fn fit(points: &[Point], in_control: Option<&[Point]>) -> Result<Fit, BenchError> {
+    let is_fitted = |&drive: &usize| points[drive].peculiarity != Peculiarity::Intervals;
+    let fitted: Vec<usize> = (0..points.len()).filter(is_fitted).collect();
+    let line = |drives: &[usize]| {
+        let of = |points: &[Point]| -> Vec<Point> {
+            drives.iter().map(|&drive| points[drive]).collect()
+        };
+        match in_control {
+            None => weights(&of(points)).map(|weights| Line {
+                weights,
+                least: 0.0,
+            }),
+            Some(in_control) => Ok(beyond(weights(&of(in_control))?, &of(points))),
+        }
+    };
     let mut errors = Errors::default();
-    for (left_out, point) in fitted.iter().enumerate() {
-        let mut others = fitted.clone();
-        others.remove(left_out);
-        let own = off(&weights(&others)?, point);
+    for &left_out in &fitted {
+        let others: Vec<usize> = fitted
+            .iter()
+            .copied()
+            .filter(|&drive| drive != left_out)
+            .collect();
+        let point = &points[left_out];
+        let own = line(&others)?.off(point);
         errors.learning = errors.learning.max(own);
         if point.peculiarity == Peculiarity::None {
             errors.usual = errors.usual.max(own);
         }
     }
-    let weights = weights(&fitted)?;
-    let all = points.iter().map(|point| off(&weights, point));
+    let line = line(&fitted)?;
+    let all = points.iter().map(|point| line.off(point));
     errors.intervals = all.fold(errors.learning, f64::max);
-    Ok(Fit { weights, errors })
+    Ok(Fit { line, errors })
+}
+
+/// Any step is one in control behind a braked or bridged period's examination, or one at rest, whichever is
+/// longer: the constant that is added and the least time with the least sum of relative errors, among
+/// those that fit one drive each.
+fn beyond(in_control: Work, points: &[Point]) -> Line {
+    let line = |added: f64, least: f64| {
+        let mut weights = in_control;
+        weights[0] += added;
+        Line { weights, least }
+    };
+    let added = points
+        .iter()
+        .map(|point| point.time - weighed(&in_control, 0.0, &point.work));
+    let lines = added.flat_map(|added| {
+        points
+            .iter()
+            .map(move |point| line(added.max(0.0), point.time))
+    });
+    let error = |line: &Line| -> f64 { points.iter().map(|point| line.off(point)).sum() };
+    let best = lines.min_by(|one, other| error(one).total_cmp(&error(other)));
+    best.unwrap_or(line(0.0, 0.0))
 }
 
 /// Weights of 0 or more whose estimates have the least sum of relative errors: a linear program with
@@ -336,9 +394,9 @@ mod tests {
         let mut points: Vec<Point> = (1..9)
             .map(|k| exact(point(f64::from(10 * k), f64::from(k * k % 7))))
             .collect();
-        let found = fit(&points).expect("a fit");
+        let found = fit(&points, None).expect("a fit");
         for (weight, expected) in [(0, 20.0), (2, 1.5), (3, 4.0)] {
-            assert!((found.weights[weight] - expected).abs() < 1e-6);
+            assert!((found.line.weights[weight] - expected).abs() < 1e-6);
         }
         assert!(found.errors.learning < 1e-6 && found.errors.usual < 1e-6);
         // A drive that takes a quarter more changes no weight, and is the largest error of its kind.
@@ -348,8 +406,8 @@ mod tests {
             time: 1.25 * usual.time,
             ..usual
         });
-        let found = fit(&points).expect("a fit");
-        assert!((found.weights[2] - 1.5).abs() < 1e-6);
+        let found = fit(&points, None).expect("a fit");
+        assert!((found.line.weights[2] - 1.5).abs() < 1e-6);
         assert!(
             (found.errors.learning - 0.25).abs() < 1e-6,
             "{}",
@@ -362,11 +420,31 @@ mod tests {
             time: 2.0 * usual.time,
             ..usual
         });
-        let with_intervals = fit(&points).expect("a fit");
-        assert_eq!(with_intervals.weights, found.weights);
+        let with_intervals = fit(&points, None).expect("a fit");
+        assert_eq!(with_intervals.line, found.line);
         assert!((with_intervals.errors.intervals - 1.0).abs() < 1e-6);
         assert!((with_intervals.errors.learning - 0.25).abs() < 1e-6);
         assert!(with_intervals.errors.usual < 1e-6);
+    }
+
+    #[test]
+    fn any_step_is_one_in_control_and_more_or_one_at_rest() {
+        let in_control = |add: f64| Point {
+            peculiarity: Peculiarity::None,
+            work: [1.0, 0.0, add, 0.0, 0.0, 0.0, 0.0],
+            time: 20.0 + 2.0 * add,
+        };
+        let control: Vec<Point> = (1..20).map(|k| in_control(f64::from(10 * k))).collect();
+        let any = |point: &Point| Point {
+            time: (point.time + 70.0).max(230.0),
+            ..*point
+        };
+        let any: Vec<Point> = control.iter().map(any).collect();
+        let found = fit(&any, Some(&control)).expect("a fit");
+        assert!((found.line.weights[0] - 90.0).abs() < 1e-6, "{found:?}");
+        assert!((found.line.weights[2] - 2.0).abs() < 1e-6, "{found:?}");
+        assert!((found.line.least - 230.0).abs() < 1e-6, "{found:?}");
+        assert!(found.errors.intervals < 1e-6, "{found:?}");
     }
 
     #[test]

@@ -45,8 +45,8 @@ pub struct Counts {
     pub supervision: Option<u32>,
     /// Maximum instructions of a step in closed loop.
     pub worst: u32,
-    /// Maximum instructions of a step in calibration, in pre-charge and on arbitrary inputs; only
-    /// for drives.
+    /// Maximum instructions of a step in calibration, pre-charge, coasting and braking, and on arbitrary
+    /// inputs; only for drives.
     pub arbitrary: Option<u32>,
     /// Bytes of stack, maximum of all these steps.
     pub stack: u32,
@@ -320,7 +320,7 @@ fn numbers(answers: &[u8]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::cost::{INTERRUPT_VARIANT, paper_drive};
-    use hexagen::Fault;
+    use hexagen::{Fault, LegState};
 
     #[test]
     fn the_largest_step_is_that_of_any_input() {
@@ -339,7 +339,7 @@ mod tests {
 
     /// Checks the documentation of the table's column of arbitrary inputs.
     #[test]
-    fn arbitrary_inputs_calibrate_pre_charge_and_trip() {
+    fn arbitrary_inputs_calibrate_pre_charge_brake_and_trip() {
         let drive = paper_drive(INTERRUPT_VARIANT).expect("a drive of the library");
         let inputs = Inputs::record(&drive).expect("a plant");
         let (records, _) = inputs.arbitrary.as_deref().expect("of a drive").as_chunks();
@@ -357,18 +357,28 @@ mod tests {
         assert!(steps_behind(Record::Precharge) >= inverter.precharge_periods as usize);
 
         let mut replayed = Recorder::new(&drive, None);
-        let mut faults = vec![];
+        let (mut faults, mut brakes, mut opposes) = (vec![], false, false);
         for record in records {
             match record {
                 Record::Step(sample) => {
-                    replayed.step(sample);
+                    let command = replayed.step(sample);
+                    opposes |= brakes && command.state().contains(&LegState::Pulsed);
                 }
-                call => replayed.call(call),
+                call => {
+                    brakes = call == Record::Stop(Stop::Brake);
+                    replayed.call(call);
+                }
             }
             faults.extend(replayed.fault());
         }
-        for fault in [Fault::OverCurrent, Fault::AdcRange, Fault::Hall] {
+        for fault in [
+            Fault::OverCurrent,
+            Fault::AdcRange,
+            Fault::Hall,
+            Fault::Offset,
+        ] {
             assert!(faults.contains(&fault), "{fault:?}");
         }
+        assert!(opposes, "no period of braking was controlled");
     }
 }

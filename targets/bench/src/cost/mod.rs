@@ -51,11 +51,12 @@ const LEGEND: &str = "normal, worst: instructions from the function's entry to i
     from the initial state.\n\
     supervision: share of the normal path, counted on a drive with the same limits and an empty law: call and return, mode, \
     checks of Hall code, ADCs and currents. The rest is the law. Only for drives in Rust.\n\
-    arbitrary: maximum in calibration, in pre-charge, and on arbitrary inputs and calls, which trip the drive; only for drives.\n\
+    arbitrary: maximum in calibration, one that fails included, in pre-charge, coasting and braking, and on arbitrary inputs and calls, \
+    which trip the drive; only for drives.\n\
     longest: instructions of the longest path through the control-flow graph of the function and its callees, paths that never \
-    return left out; behind it, as a multiple of the largest counted step. Paths count whose conditions contradict each other, as \
-    one that trips and then controls. in control: the same without start-up, calibration, pre-charge, trips, coasting, braking and \
-    bridged Hall codes. Only for drives.\n\
+    return left out; behind it, as a multiple of the largest counted step. Paths count whose conditions contradict each other. \
+    in control: the same of periods that pass the supervisor's check: without start-up, calibration, pre-charge, trips, coasting, \
+    braking and bridged Hall codes. Only for drives.\n\
     most cycles: an upper bound along both graphs, for the chip above: times of its core's manual, each instruction at its most; \
     wait states for every line fetched, without credit for prefetch and caches. Only for drives.\n\
     goal: normal / worst / stack of the best version found by editing the emitted text by hand, with the same supervisor.\n\

@@ -302,7 +302,10 @@ fn a_step_longer_than_the_longest_path_is_an_error() {
     let said = "step_x: a step of 375 instructions was counted, and the longest path has 374";
     assert!(error.starts_with(said), "{error}");
     let error = check(90, 90).expect_err("nothing is left out");
-    assert!(error.contains("calls no function with `examine` in its name"), "{error}");
+    assert!(
+        error.contains("calls no function with `examine` in its name"),
+        "{error}"
+    );
 }
 
 #[test]

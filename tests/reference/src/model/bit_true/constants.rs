@@ -312,7 +312,9 @@ impl<W: Word> Constants<W> {
             // Only pulses narrower than the period depend on the measured bus.
             ratio_bits: scale.bits_if(bus.is_some() && variant.pulsed(), "ratio")?,
             scale_dropped: if saturation == Some(Saturation::KeepAngle) {
-                (-scale.extra_bits("scale_volts")?).max(0) as u32
+                // Below 0 with more than 65535 timer counts.
+                let bits = scale.signed_bits("scale_volts")?;
+                (scale.signed_bits("voltage")? - bits).max(0) as u32
             } else {
                 0
             },

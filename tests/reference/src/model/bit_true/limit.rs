@@ -9,16 +9,14 @@ use crate::exact::{
 use crate::model::Reach;
 
 /// Fraction bits of the blend between torque priority and the nearest point.
-const BLEND_BITS: u32 = 12;
+const BLEND_BITS: u32 = 15;
 /// Torque priority blends over `p_max >> BLEND_SHARE` beyond its limit.
 const BLEND_SHARE: u32 = 1;
 /// The lighter weight is at least the largest EMF `>> LIGHT_SHARE`.
 const LIGHT_SHARE: u32 = 2;
 /// Torque priority needs an EMF of at least the bus `>> LEAST_EMF`.
 const LEAST_EMF: u32 = 5;
-const BLEND_ONE: f64 = 4096.0;
-/// Bits that the products lose in it.
-const BLEND_DROPPED: u32 = 11;
+const BLEND_ONE: f64 = 32_768.0;
 /// Fraction bits of the ratio of bus and spread.
 const SCALE_BITS: u32 = 16;
 /// The phase behind each.
@@ -157,13 +155,13 @@ fn torque_priority<W: Word>(
     let mut reach = Reach::Outside;
     if p > p_max {
         reach = Reach::PastReach;
-        let share = greater(floor_shift(p_max, BLEND_SHARE + BLEND_DROPPED), 1.0);
+        let share = greater(floor_shift(p_max, BLEND_SHARE), 1.0);
         // Implied by the condition.
-        let past = floor_shift((p - p_max).known(0.0, WHOLE), BLEND_DROPPED);
+        let past = (p - p_max).known(0.0, WHOLE);
         let blend = lesser(floor(past * BLEND_ONE / share), BLEND_ONE);
-        let mul12 = Shift::new(BLEND_BITS);
-        to_x += mul12.round_product(blend, near_x - to_x);
-        to_y += mul12.round_product(blend, near_y - to_y);
+        let mul15 = Shift::new(BLEND_BITS);
+        to_x += mul15.round_product(blend, near_x - to_x);
+        to_y += mul15.round_product(blend, near_y - to_y);
     }
     let mut legs = [word(0.0); 3];
     legs[x] = -sign * to_x;
