@@ -1,7 +1,7 @@
 //! The runtime's supervisor, alone, equals the bit-true model's supervision, in streams and from
 //! arbitrary states, in all of its modes and faults.
 
-use hexagen::{Command, Fault, Limits, Mode, Sample, Sensors, Supervisor, Unfit};
+use hexagen::{Command, Fault, Limits, Sample, Sensors, Supervisor, Unfit};
 use hexagen_codegen::pipeline::Generated;
 use hexagen_lab::{formats, limits, sensors};
 use hexagen_reference::verify::{Action, Context, Stimulus};
@@ -237,7 +237,7 @@ impl Pair {
                 let (legs, tripped) = self.supervisor.rest(limits, sensors, sample, fault);
                 // A trip is told in its period alone.
                 let [mode, fault, ..] = self.supervisor.words();
-                let trips = mode != mode_before && Mode::from_number(mode) == Mode::Tripped;
+                let trips = mode != mode_before && mode == hexagen::Mode::Tripped as i32;
                 let expected = Fault::from_number(fault).filter(|_| trips);
                 assert_eq!(tripped, expected, "{sample:?}");
                 Some(legs)
