@@ -224,6 +224,19 @@ fn every_library_motor_in_a_sample_of_the_product() {
     }
 }
 
+/// The ratio of bus and spread drops bits of voltages below the count where a period has more counts than 16
+/// bits hold.
+#[test]
+fn long_periods_limit_the_voltage() {
+    let text = motor(PAPER_MOTOR).text.replace("20 kHz", "2 kHz");
+    let text = text.replace("timer_clock = \"72 MHz\"", "timer_clock = \"180 MHz\"");
+    for options in ["", "modulation = \"table2\"\n"] {
+        let lines = format!("[controller]\nsaturation = \"keep_angle\"\n{options}");
+        let text = text.replacen("[controller]\n", &lines, 1);
+        assert_graph_is_model(options, &text, ROW_STEPS, 1);
+    }
+}
+
 /// A drive's angle per period, in degrees, at a constant speed of the rotor in degrees per period.
 fn angle_per_period(program: &Program, degrees: f64) -> f64 {
     const CODES: [i32; 6] = [0b001, 0b101, 0b100, 0b110, 0b010, 0b011];
