@@ -810,7 +810,6 @@ impl Supervisor {
     /// It is apart from [`rest`](Self::rest), so that no way leads from a trip or a start-up to control,
     /// and the longest computation time is that of one of them.
     #[inline(always)]
-    #[must_use]
     pub fn examine(
         &mut self,
         limits: &Limits,

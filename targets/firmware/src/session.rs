@@ -49,11 +49,11 @@ pub fn replay_drive<C: Control>(
 /// If the exchange ends early.
 pub fn replay<D: Subject>(step: StepFn<D>, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
     let drive = D::new();
-    replay_on(&mut Replayed { drive, step }, link, task)
+    replay_on(&mut Replayed { drive, step }, link, *task)
 }
 
 /// The same, compiled once for all drives: the smallest core's flash has to hold them.
-fn replay_on(replayed: &mut dyn Replay, link: &mut dyn Link, task: &Task) -> Result<(), Broken> {
+fn replay_on(replayed: &mut dyn Replay, link: &mut dyn Link, task: Task) -> Result<(), Broken> {
     let mut records = [0; BLOCK * RECORD];
     let (mut block, mut depth) = (0, 0);
     loop {
