@@ -365,7 +365,9 @@ mod tests {
                     opposes |= brakes && command.state().contains(&LegState::Pulsed);
                 }
                 call => {
-                    brakes = call == Record::Stop(Stop::Brake);
+                    if let Record::New | Record::Reset | Record::Stop(_) = call {
+                        brakes = call == Record::Stop(Stop::Brake);
+                    }
                     replayed.call(call);
                 }
             }

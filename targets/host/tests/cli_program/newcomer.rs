@@ -518,8 +518,8 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
     // Where nobody names the core, that of `check` is named.
     let out = tempfile::tempdir().expect("a temporary folder");
     let out = out.path().to_str().expect("a path");
-    let told = run(["generate", "hurst-long", "--emit", "c99", "--out", out]).stderr;
-    let longest = "in C the longest step may take up to 102 % of the control period (estimated) if the core is a Cortex-M4 at 170 MHz";
+    let told = run(["generate", "br2804-1700kv", "--emit", "c99", "--out", out]).stderr;
+    let longest = "in C the longest step may take up to 118 % of the control period (estimated) if the core is a Cortex-M4 at 170 MHz";
     assert!(told.contains(longest), "{told}");
 }
 
@@ -757,7 +757,7 @@ fn a_drive_with_a_speed_loop_is_judged_by_its_torque() {
 #[test]
 fn a_step_that_takes_most_of_the_period_is_told() {
     let check = |variant: &str| run(["check", PAPER, "--controller", variant]);
-    let said = check("pdcc:target=cortex_m4,core_clock=42 MHz");
+    let said = check("pdcc:target=cortex_m4,core_clock=35 MHz");
     let words: Vec<&str> = said.stdout.split_whitespace().collect();
     assert!(words.join(" ").contains("a step may take "), "{said:?}");
     let said = check("pdcc:target=cortex_m0,core_clock=8 MHz");
