@@ -74,10 +74,10 @@ pub fn limit<W: Word>(
     }
     let (legs, reach) = match rule {
         Saturation::KeepAngle => {
-            let short = |volts| floor_shift(volts, k.scale_dropped);
+            let bus = floor_shift(v_bus, k.scale_dropped);
+            let spread = greater(floor_shift(spread, k.scale_dropped), 1.0);
             let most = word(pow2(SCALE_BITS as i32) - 1.0);
-            // The demand exceeds the bus.
-            let ratio = short(v_bus).divide(SCALE_BITS, greater(short(spread), 1.0), most);
+            let ratio = bus.divide(SCALE_BITS, spread, most);
             let scaled = |bits| Coefficient::new(ratio, bits);
             let [a, b] = both(|x| scaled(SCALE_BITS).mul(u[x]));
             // That of half the sum.
