@@ -37,6 +37,21 @@ const EQUIVALENT: &[(usize, &str, &str)] = &[
         "the product at the limit rounds to the same",
     ),
     (
+        0,
+        "constant one more: `const E_MODEL_MIN",
+        "no step of these streams turns far enough in a period for this EMF",
+    ),
+    (
+        0,
+        "constant one less: `const E_MODEL_MIN",
+        "no step of these streams turns far enough in a period for this EMF",
+    ),
+    (
+        0,
+        "wrong bit in a constant: `const E_MODEL_MIN",
+        "no step of these streams turns far enough in a period for this EMF",
+    ),
+    (
         2,
         "table entry one more: SHAPE_ROWS[124].c2",
         "the table has 96 entries, padded to a power of two",
