@@ -365,8 +365,8 @@ fn examine<C: Control>(
     sample: Sample,
     fault: Option<Fault>,
 ) -> Examined {
-    // Without effect but on cost: where the compiler sees that a copy of the sample is only read, it stores
-    // the original one in memory instead, in every step. It does not see through this.
+    // Without effect but on cost: where the compiler sees that a copy of the sample is only read, it
+    // stores the original one in memory instead, in every step. It does not see through this.
     black_box(&sample);
     let resolved;
     let seen = match C::ANGLE {

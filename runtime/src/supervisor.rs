@@ -802,10 +802,12 @@ impl Supervisor {
 
     /// What the drive does in a period that is not fit for control: one whose [`check`](Self::check)
     /// gave no sample, or with the fault `known` already, which no sample shows. The check is called in
-    /// any case, since it follows the sensors; with a known fault its sample is not used. Bridges a
-    /// disturbed Hall code, brakes, or says that it rests; then call [`rest`](Self::rest) with the fault. In the sample,
-    /// counts are clamped to the ADC's range, the current of a phase that is not read to that of one that
-    /// is; a Hall code that is bridged is the last one, and another that no sensors give is 0.
+    /// any case, since it follows the sensors; with a known fault, what it returns is not used.
+    ///
+    /// Bridges a disturbed Hall code, brakes, or says that the drive rests; then call
+    /// [`rest`](Self::rest) with the fault. In the returned sample counts are clamped to the ADC's range,
+    /// and the current of a phase that is not read to that of one that is; a Hall code that is bridged is
+    /// the last one, and another that no sensors give is 0.
     ///
     /// It is apart from [`rest`](Self::rest), so that no way leads from a trip or a start-up to control,
     /// and the longest computation time is that of one of them.

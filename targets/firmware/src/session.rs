@@ -66,11 +66,9 @@ fn replay_on(replayed: &mut dyn Replay, link: &mut dyn Link, task: Task) -> Resu
                 digest(replayed, records)?;
             }
             Mode::Count | Mode::Trace | Mode::Stack => {
-                for &record in records {
-                    if let Some(sample) = sample_after(replayed, record)? {
-                        replayed.measure(task.mode, sample, &mut depth, link)?;
-                    }
-                }
+                each_step(replayed, records, |replayed, sample| {
+                    replayed.measure(task.mode, sample, &mut depth, link)
+                })?;
             }
             Mode::Digest | Mode::List | Mode::Supervision => {}
         }
@@ -206,28 +204,31 @@ impl<D: Subject> Replay for Replayed<D> {
     }
 }
 
-/// The sample of a step; any other call is executed.
-fn sample_after(replayed: &mut dyn Replay, record: [u8; RECORD]) -> Result<Option<Sample>, Broken> {
-    let record = Record::decode(record).ok_or(Broken::Format)?;
-    if let Record::Step(sample) = record {
-        return Ok(Some(sample));
+/// Takes the samples of the steps among the records in turn, and executes the calls between them.
+fn each_step(
+    replayed: &mut dyn Replay,
+    records: &[[u8; RECORD]],
+    mut take: impl FnMut(&mut dyn Replay, Sample) -> Result<(), Broken>,
+) -> Result<(), Broken> {
+    for &record in records {
+        match Record::decode(record).ok_or(Broken::Format)? {
+            Record::Step(sample) => take(replayed, sample)?,
+            call => replayed.call(call),
+        }
     }
-    replayed.call(record);
-    Ok(None)
+    Ok(())
 }
 
 fn digest(replayed: &mut dyn Replay, records: &[[u8; RECORD]]) -> Result<Digest, Broken> {
     let (mut digest, mut words) = (Digest::default(), [0; MOST_WORDS]);
-    for &record in records {
-        let Some(sample) = sample_after(replayed, record)? else {
-            continue;
-        };
+    each_step(replayed, records, |replayed, sample| {
         let command = replayed.step(sample);
         digest.answer(command, replayed.fault());
         for &word in replayed.state_words(&mut words) {
             digest.word(word as u32);
         }
-    }
+        Ok(())
+    })?;
     Ok(digest)
 }
 
@@ -237,15 +238,12 @@ fn full(
     link: &mut dyn Link,
 ) -> Result<(), Broken> {
     let mut words = [0; MOST_WORDS];
-    for &record in records {
-        let Some(sample) = sample_after(replayed, record)? else {
-            continue;
-        };
+    each_step(replayed, records, |replayed, sample| {
         let command = replayed.step(sample);
         link.write(&encode_outputs(command, replayed.fault()))?;
         for word in replayed.state_words(&mut words) {
             link.write(&word.to_le_bytes())?;
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }

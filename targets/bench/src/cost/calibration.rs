@@ -295,9 +295,9 @@ fn fits(drives: &[Drive]) -> Result<Times<Fit>, BenchError> {
 const CONTROL: usize = 1;
 const ANY: usize = 4;
 
-/// Drives whose commands have intervals are not fitted: which of their steps limit the voltage depends on the
-/// drive, and the operations do not tell it. `in_control`: the same drives' steps in control, beyond which
-/// steps of this figure go.
+/// The line through the points of a figure. Drives whose commands have intervals are not fitted: which of
+/// their steps limit the voltage depends on the drive, and the operations do not tell it. `in_control`:
+/// for a figure of any step, the points of the same drives in control, on whose line its line builds.
 fn fit(points: &[Point], in_control: Option<&[Point]>) -> Result<Fit, BenchError> {
     let is_fitted = |&drive: &usize| points[drive].peculiarity != Peculiarity::Intervals;
     let fitted: Vec<usize> = (0..points.len()).filter(is_fitted).collect();
