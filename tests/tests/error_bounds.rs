@@ -126,7 +126,7 @@ fn run(program: &Program, seed: u64) -> f64 {
                         let values = &program.tables[table.index()].values;
                         i64::from(values[at as usize & (values.len() - 1)])
                     };
-                    op.apply(&words, table)
+                    op.apply_to(&words, table)
                         .map(|result| (result, ideal(program, op, &x, result)))
                 }
                 (_, None) => None,

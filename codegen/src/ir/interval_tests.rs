@@ -32,7 +32,7 @@ fn choices(intervals: &[Interval]) -> Vec<Vec<i64>> {
 fn check(op: Op, operands: &[Interval]) {
     let results: Option<Vec<i64>> = choices(operands)
         .iter()
-        .map(|x| op.apply(x, |_, _| 0))
+        .map(|x| op.apply_to(x, |_, _| 0))
         .collect();
     let found = op.interval(operands, |_| Interval::FLAG);
     assert_eq!(found, results.and_then(hull), "{op:?} of {operands:?}");
@@ -150,7 +150,7 @@ fn intervals_of_angles_and_tables_are_those_of_all_words() {
     let of = |op: Op| {
         let results = ends
             .iter()
-            .filter_map(|&angle| op.apply(&[angle], |_, _| 0));
+            .filter_map(|&angle| op.apply_to(&[angle], |_, _| 0));
         (
             hull(results),
             op.interval(&[Interval::WORD], |_| Interval::FLAG),
@@ -223,7 +223,7 @@ fn results(function: &Function, inputs: &[i64]) -> Vec<i64> {
                 let holds = results[value_named(function, "holds").index()] == 1;
                 results[if holds { taken } else { otherwise }.index()]
             }
-            op => op.apply(&operands, |_, _| 0).expect("inside its domain"),
+            op => op.apply_to(&operands, |_, _| 0).expect("inside its domain"),
         };
         results.push(result);
     }

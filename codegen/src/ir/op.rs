@@ -414,12 +414,18 @@ impl Op {
         }
     }
 
-    /// The exact result for operand values `x` (in the order of [`Op::operands`]), which may exceed
-    /// a word. `None` for leaves and joins, and for operands outside the operator's domain.
-    pub fn apply(&self, x: &[i64], table: impl Fn(TableId, i64) -> i64) -> Option<i64> {
+    /// The exact result of the values that `word` gives, which may exceed a word. `None` for leaves
+    /// and joins, and for values outside the operator's domain.
+    #[inline]
+    pub fn apply(
+        &self,
+        word: impl Fn(Value) -> i64,
+        table: impl Fn(TableId, i64) -> i64,
+    ) -> Option<i64> {
         let turn = 1_i64 << 32;
-        let unsigned = |a: i64| a.rem_euclid(turn);
+        let unsigned = |value| word(value).rem_euclid(turn);
         let wrap = |a: i64| i64::from(a.rem_euclid(turn) as u32 as i32);
+        let product = |a, b| i128::from(word(a)) * i128::from(word(b));
         Some(match *self {
             Self::Input(_)
             | Self::Param(_)
@@ -427,58 +433,97 @@ impl Op {
             | Self::Constant(_)
             | Self::Join { .. } => return None,
             Self::Literal(value) => i64::from(value),
-            Self::Add(..) => x[0] + x[1],
-            Self::Sub(..) => x[0] - x[1],
-            Self::Neg(_) => -x[0],
-            Self::Abs(_) => x[0].abs(),
-            Self::Product(..) => x[0] * x[1],
-            Self::MulRound { shift, .. } | Self::MulRoundNarrow { shift, .. } => {
-                ((i128::from(x[0]) * i128::from(x[1]) + (1 << (shift - 1))) >> shift) as i64
+            Self::Add(a, b) => word(a) + word(b),
+            Self::Sub(a, b) => word(a) - word(b),
+            Self::Neg(a) => -word(a),
+            Self::Abs(a) => word(a).abs(),
+            Self::Product(a, b) => word(a) * word(b),
+            Self::MulRound {
+                coefficient,
+                signal,
+                shift,
             }
-            Self::MulFloor { shift, .. } => ((i128::from(x[0]) * i128::from(x[1])) >> shift) as i64,
-            Self::MulAddFloor { shift, .. } => {
-                let [a, b, c, d] = [0, 1, 2, 3].map(|place| i128::from(x[place]));
-                ((a * b + c * d) >> shift) as i64
-            }
-            Self::MulLimited { .. } => {
-                if x[0] < 0 || x[1] < 0 {
+            | Self::MulRoundNarrow {
+                coefficient,
+                signal,
+                shift,
+            } => ((product(coefficient, signal) + (1 << (shift - 1))) >> shift) as i64,
+            Self::MulFloor { a, b, shift } => (product(a, b) >> shift) as i64,
+            Self::MulAddFloor {
+                first: [a, b],
+                second: [c, d],
+                shift,
+            } => ((product(a, b) + product(c, d)) >> shift) as i64,
+            Self::MulLimited { a, b, limit } => {
+                let (a, b) = (word(a), word(b));
+                if a < 0 || b < 0 {
                     return None;
                 }
-                (x[0] * x[1]).min(x[2])
+                (a * b).min(word(limit))
             }
-            Self::ShiftLeft(_, n) => x[0] << n,
-            Self::ShiftRight(_, n) => x[0] >> n,
-            Self::ShiftRound(_, n) => (x[0] + (1 << (n - 1))) >> n,
-            Self::Min(..) | Self::Lesser(..) => x[0].min(x[1]),
-            Self::Max(..) | Self::Greater(..) => x[0].max(x[1]),
-            Self::Clamp { .. } => x[0].max(x[1]).min(x[2]),
-            Self::Divide { shift, .. } | Self::DivideNarrow { shift, .. } => {
-                if x[0] < 0 || x[1] < 1 {
+            Self::ShiftLeft(a, n) => word(a) << n,
+            Self::ShiftRight(a, n) => word(a) >> n,
+            Self::ShiftRound(a, n) => (word(a) + (1 << (n - 1))) >> n,
+            Self::Min(a, b) | Self::Lesser(a, b) => word(a).min(word(b)),
+            Self::Max(a, b) | Self::Greater(a, b) => word(a).max(word(b)),
+            Self::Clamp { x, low, high } => word(x).max(word(low)).min(word(high)),
+            Self::Divide {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            }
+            | Self::DivideNarrow {
+                numerator,
+                shift,
+                denominator,
+                limit,
+            } => {
+                let (numerator, denominator) = (word(numerator), word(denominator));
+                if numerator < 0 || denominator < 1 {
                     return None;
                 }
-                ((x[0] << shift) / x[1]).min(x[2])
+                ((numerator << shift) / denominator).min(word(limit))
             }
-            Self::TurnOver(_) => {
-                if x[0] < 2 {
+            Self::TurnOver(a) => {
+                let a = word(a);
+                if a < 2 {
                     return None;
                 }
-                (turn - 1) / x[0]
+                (turn - 1) / a
             }
-            Self::AngleAdd(..) => wrap(x[0] + x[1]),
-            Self::AngleSub(..) => wrap(x[0] - x[1]),
-            Self::AngleIndex { segments, .. } => (unsigned(x[0]) * i64::from(segments)) >> 32,
-            Self::AngleFraction { segments, .. } => {
-                unsigned(unsigned(x[0]) * i64::from(segments)) - (1 << 31)
+            Self::AngleAdd(a, b) => wrap(word(a) + word(b)),
+            Self::AngleSub(a, b) => wrap(word(a) - word(b)),
+            Self::AngleIndex { angle, segments } => (unsigned(angle) * i64::from(segments)) >> 32,
+            Self::AngleFraction { angle, segments } => {
+                (unsigned(angle) * i64::from(segments)).rem_euclid(turn) - (1 << 31)
             }
-            Self::Lookup { table: id, .. } => table(id, x[0]),
-            Self::Compare(how, ..) => i64::from(how.holds(x[0], x[1])),
-            Self::Exceeds(..) => i64::from(x[0].abs() > x[1]),
-            Self::FlagWord(_) => x[0],
-            Self::And(..) => x[0] & x[1],
-            Self::Or(..) => x[0] | x[1],
-            Self::Not(_) => 1 - x[0],
-            Self::Select { .. } => x[if x[0] == 1 { 1 } else { 2 }],
+            Self::Lookup {
+                table: id, index, ..
+            } => table(id, word(index)),
+            Self::Compare(how, a, b) => i64::from(how.holds(word(a), word(b))),
+            Self::Exceeds(a, limit) => i64::from(word(a).abs() > word(limit)),
+            Self::FlagWord(flag) => word(flag),
+            Self::And(a, b) => word(a) & word(b),
+            Self::Or(a, b) => word(a) | word(b),
+            Self::Not(a) => 1 - word(a),
+            Self::Select {
+                condition,
+                then,
+                otherwise,
+            } => word(if word(condition) == 1 {
+                then
+            } else {
+                otherwise
+            }),
         })
+    }
+
+    /// [`Op::apply`] to words in the order of [`Op::operands`], wherever its operands are defined.
+    pub fn apply_to(&self, words: &[i64], table: impl Fn(TableId, i64) -> i64) -> Option<i64> {
+        let (mut op, mut numbers) = (*self, 0..);
+        op.each_operand(|operand| operand.0 = numbers.next().unwrap_or(u32::MAX));
+        op.apply(|operand| words[operand.index()], table)
     }
 
     /// An interval of the results for operands in the intervals `x`; exact but for correlations
@@ -488,7 +533,7 @@ impl Op {
         x: &[Interval],
         table: impl Fn(TableId) -> Interval,
     ) -> Option<Interval> {
-        let exact = |p: i64, q: i64| self.apply(&[p, q, 0], |_, _| 0).unwrap_or(0);
+        let exact = |p: i64, q: i64| self.apply_to(&[p, q], |_, _| 0).unwrap_or(0);
         Some(match *self {
             Self::Input(_) | Self::Param(_) | Self::State(_) | Self::Constant(_) => return None,
             Self::Literal(value) => Interval::point(i64::from(value)),

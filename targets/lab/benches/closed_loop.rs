@@ -1,7 +1,8 @@
 //! A second of closed loop on one core: the 660 W motor at 1500 rpm under rated torque, sampled
 //! every 50 us.
 //!
-//! `cargo bench -p hexagen-lab`; a second of one controller should take less than 0.2 s.
+//! `cargo bench -p hexagen-lab`; a second of one controller should take less than 0.2 s, and one of
+//! an interpreted controller at most twice as long as a compiled one.
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use hexagen_lab::closed_loop::{ClosedLoop, Delay};
@@ -12,6 +13,9 @@ use std::time::Duration;
 
 /// Every kind of controller in its default variant, which is compiled in.
 const CONTROLLERS: [&str; 5] = ["fcs-mpc", "p-pwm", "pdcc", "phcc", "pi-pwm"];
+
+/// A variant that is not: the interpreter runs it.
+const INTERPRETED: &str = "pdcc:emf=model,advance=2";
 
 const RPM: f64 = 1500.0;
 
@@ -31,9 +35,13 @@ fn second(criterion: &mut Criterion) {
     group
         .sample_size(20)
         .measurement_time(Duration::from_secs(5));
-    for controller in CONTROLLERS {
+    let compiled = CONTROLLERS.map(|controller| (controller, EngineKind::Compiled));
+    let all = compiled
+        .into_iter()
+        .chain([(INTERPRETED, EngineKind::Interpreter)]);
+    for (controller, engine) in all {
         let drive = prepare(&motor, Some(controller)).expect("generates");
-        assert_eq!(drive.engine_kind(), EngineKind::Compiled, "{controller}");
+        assert_eq!(drive.engine_kind(), engine, "{controller}");
         group.bench_function(controller, |bencher| {
             bencher.iter_batched(
                 || closed_loop(&drive),

@@ -241,7 +241,7 @@ impl<'g> Interpreted<'g> {
             },
         };
         let results = machine.step(&places.inputs.words(&checked))?;
-        let command = places.command.command(&results);
+        let command = places.command.command(results);
         supervisor.follow_command(sensors, command.on());
         Ok(command)
     }

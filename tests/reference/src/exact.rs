@@ -219,6 +219,35 @@ impl<W: Word> Coefficient<W> {
     }
 }
 
+/// The upper and lower 16 bits of a word: high 2^16 + low, 0 <= low < 2^16.
+#[derive(Clone, Copy, Debug)]
+pub struct Halves<W> {
+    high: W,
+    low: W,
+}
+
+impl<W: Word> Halves<W> {
+    /// Splits a word.
+    #[inline(always)]
+    #[track_caller]
+    pub fn of(x: W) -> Self {
+        let _site = W::here();
+        let high = floor_weighted(x, 1.0 / TWO_16);
+        Self {
+            high,
+            low: (x - high * TWO_16).known(0.0, TWO_16 - 1.0),
+        }
+    }
+
+    /// floor(x y/2^16) for a word y.
+    #[inline(always)]
+    #[track_caller]
+    fn product(self, y: W) -> W {
+        let _site = W::here();
+        self.high * y + floor_weighted(self.low * y, 1.0 / TWO_16)
+    }
+}
+
 /// Maximum fraction bits that leave room for a half below the last one.
 const FRACTION: u32 = 51;
 
@@ -269,9 +298,7 @@ impl Shift {
             whole.debug_whole();
             W::nearest(whole * self.weight + nudge(self.weight))
         } else {
-            let high = floor_weighted(x, 1.0 / TWO_16);
-            let low = (x - high * TWO_16).known(0.0, TWO_16 - 1.0);
-            let cut = high * y + floor_weighted(low * y, 1.0 / TWO_16);
+            let cut = Halves::of(x).product(y);
             W::nearest(cut * self.cut_weight + nudge(self.cut_weight))
         }
     }
@@ -282,6 +309,14 @@ impl Shift {
     pub fn floor_product<W: Word>(&self, x: W, y: W) -> W {
         let _site = W::here();
         self.product(x, y, |weight| 0.5 * weight - 0.5)
+    }
+
+    /// The same for a word in halves and a shift above 16: without a branch, for factors of every length.
+    #[inline]
+    #[track_caller]
+    pub fn floor_product_of_halves<W: Word>(&self, x: Halves<W>, y: W) -> W {
+        let _site = W::here();
+        floor_weighted(x.product(y), self.cut_weight)
     }
 
     /// floor((x1 y1 + x2 y2)/2^s) for words whose products' sum fits 64 bits. For shifts above 16
@@ -295,13 +330,9 @@ impl Shift {
             // As short as its shifted result plus 16 bits.
             return floor_weighted(x1 * y1 + x2 * y2, self.weight);
         }
-        let halves = |x: W| {
-            let high = floor_weighted(x, 1.0 / TWO_16);
-            (high, (x - high * TWO_16).known(0.0, TWO_16 - 1.0))
-        };
-        let ((high1, low1), (high2, low2)) = (halves(x1), halves(x2));
-        let lost = floor_weighted(low1 * y1 + low2 * y2, 1.0 / TWO_16);
-        floor_weighted(high1 * y1 + high2 * y2 + lost, self.cut_weight)
+        let (x1, x2) = (Halves::of(x1), Halves::of(x2));
+        let lost = floor_weighted(x1.low * y1 + x2.low * y2, 1.0 / TWO_16);
+        floor_weighted(x1.high * y1 + x2.high * y2 + lost, self.cut_weight)
     }
 
     /// floor((x y + 2^(s-1))/2^s) for words x, y; the bare product for s = 0.

@@ -1,6 +1,6 @@
 //! Tables of periodic functions of the electrical angle, quadratic in every segment.
 
-use crate::exact::{Shift, Word, floor, pow2, round_half_up, split, to_index, wrap32};
+use crate::exact::{Halves, Shift, Word, floor, pow2, round_half_up, split, to_index, wrap32};
 use std::f64::consts::TAU;
 
 /// A third of a turn as an angle word.
@@ -52,10 +52,10 @@ impl<W: Word> Table<W> {
     #[inline]
     pub fn at(&self, theta: W) -> W {
         let (index, position) = split(theta * self.scale);
-        let t = floor(position * pow2(32)) - pow2(31);
+        let t = Halves::of(floor(position * pow2(32)) - pow2(31));
         let [c0, c1, c2] = self.segments[to_index(index)];
-        let slope = c1 + self.upper.floor_product(t, c2);
-        c0 + self.upper.floor_product(t, slope)
+        let slope = c1 + self.upper.floor_product_of_halves(t, c2);
+        c0 + self.upper.floor_product_of_halves(t, slope)
     }
 }
 
