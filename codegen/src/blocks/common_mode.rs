@@ -167,6 +167,7 @@ impl CommonModeRule {
             u: Phases([u_a, u_b]),
             centred: Phases([leg_a, leg_b, leg_c]),
             cut: limited.cut,
+            spread: limited.spread,
         }
     }
 

@@ -19,6 +19,8 @@ pub struct Limited<'b> {
     pub centred: Phases<'b, 3>,
     /// Whether the voltage was outside.
     pub cut: Flag<'b>,
+    /// max - min of the phase voltages, at most the bus.
+    pub spread: Expr<'b>,
 }
 
 /// A voltage before the limit.
@@ -124,6 +126,7 @@ impl<'b> Hexagon<'b> {
         named! {
             let centred_unsat = centred;
             let saturated = spread.is_above(bus);
+            let applied_spread = spread.min(bus);
         }
         let (inside, inside_centred) = match priority {
             Priority::Angle => self.keep_angle(l, saturated, free),
@@ -141,6 +144,7 @@ impl<'b> Hexagon<'b> {
             u: Phases([u_a, u_b]),
             centred: Phases([centred_a, centred_b, centred_c]),
             cut: saturated,
+            spread: applied_spread,
         }
     }
 

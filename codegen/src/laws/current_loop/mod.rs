@@ -68,8 +68,8 @@ pub struct CurrentLoop<'l, 'b> {
 pub struct Deadbeat<'b> {
     /// Voltages of phases a and b, not limited.
     pub u: Phases<'b>,
-    /// Dead-time compensation of the compare values; if the law compensates.
-    pub shifts: Option<Phases<'b, 3>>,
+    /// The measured current as a voltage, for the compensation of the dead time; if the law compensates.
+    pub held: Option<Phases<'b>>,
 }
 
 /// Results of the shared part of a step.
@@ -466,16 +466,16 @@ impl<'b> CurrentLoop<'_, 'b> {
         let (reference, i) = (front.reference, front.currents.pair());
         if let Some(held) = &front.held {
             let u = self.held_voltage(held, reference);
-            let shifts = compensates.then(|| {
+            let held = compensates.then(|| {
                 let k_hold = self.k_hold();
                 let doc = "Contribution of the present current when the voltage takes effect.";
                 self.l.b.stage("hold_current", &[doc]);
                 named! {
                     let held = k_hold * i;
                 }
-                self.dead_time_shifts(reference, held, self.design.k_di)
+                held
             });
-            return Deadbeat { u, shifts };
+            return Deadbeat { u, held };
         }
         let k_hold = self.k_hold();
         let k_decay = (self.options.delay == 1).then(|| self.k_decay());
@@ -505,9 +505,8 @@ impl<'b> CurrentLoop<'_, 'b> {
             _ => open,
         };
         let u = unlimited_voltage(self.l, u);
-        let stiffness = self.design.k_di;
-        let shifts = compensates.then(|| self.dead_time_shifts(reference, held, stiffness));
-        Deadbeat { u, shifts }
+        let held = compensates.then_some(held);
+        Deadbeat { u, held }
     }
 
     /// Net voltage of the voltage that is remembered as applied.

@@ -34,9 +34,9 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             },
         };
         let front = step.front(set_point);
-        let Deadbeat { u, shifts } = step.deadbeat(&front, options.dead_time_compensation);
-        let held = front.held.map(LimitEmf::Held);
-        let emf = held.or(front.e.map(LimitEmf::Known));
+        let Deadbeat { u, held } = step.deadbeat(&front, options.dead_time_compensation);
+        let folded = front.held.map(LimitEmf::Held);
+        let emf = folded.or(front.e.map(LimitEmf::Known));
         let emf = emf.map(|emf| {
             move || match emf {
                 LimitEmf::Held(held) => step.held_emf(&held),
@@ -60,9 +60,11 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         let limited = hexagon.limit(l, priority, u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
         let turned = front.turned(l, limited.cut);
+        let spread = (!pair).then_some(limited.spread);
         let modulator = Modulator {
             bus: front.bus,
-            shifts,
+            shifts: held
+                .map(|held| step.dead_time_shifts(front.reference, held, design.k_di, spread)),
         };
         let (command, applied) = match front.commutation {
             None => (modulator.three(l, &limited, common_mode), None),

@@ -120,7 +120,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
             integral,
             u,
             forward,
-            shifts,
+            held,
         } = self.regulated(step, front, memories, turning);
         let emf = front.e.map(|e| move || e);
         let priority = Priority::of(self.options.saturation, emf);
@@ -151,9 +151,12 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
         let mut remembered = front.turned(l, limited.cut);
         let integrated = integrate(limited.u);
+        let stiffness = turning.map_or(self.gain, |_| step.design.k_di);
+        let spread = Some(limited.spread);
         let modulator = Modulator {
             bus: front.bus,
-            shifts,
+            shifts: held
+                .map(|held| step.dead_time_shifts(front.reference, held, stiffness, spread)),
         };
         let command = modulator.three(l, &limited, common_mode);
         remembered.extend(integrated);
@@ -207,13 +210,11 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let asked = p + integral;
         let asked = forward.map_or(asked, |forward| asked + forward);
         let u = unlimited_voltage(l, asked);
-        let stiffness = turning.map_or(self.gain, |_| step.design.k_di);
-        let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, stiffness));
         Regulated {
             integral,
             u,
             forward,
-            shifts,
+            held,
         }
     }
 
@@ -231,7 +232,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
             let pair_current = across_pair(sign, i >> 1);
             let part = front.set_point + self.k_drop * pair_current;
         }
-        let flow = self.options.dead_time_compensation.then(|| {
+        let held = self.options.dead_time_compensation.then(|| {
             named! {
                 let held = -(self.k_drop * i.pair());
             }
@@ -250,7 +251,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
             let integral_now = self.held(integral + self.k_i * distance);
         }
         l.state_volts("integral", integral_now, INTEGRAL);
-        let shifts = flow.map(|flow| step.dead_time_shifts(front.reference, flow, self.gain));
+        let shifts = held.map(|held| step.dead_time_shifts(front.reference, held, self.gain, None));
         let doc =
             "One leg of the pair pulsed, its partner low, the third off; in commutation as well.";
         l.b.stage("modulate_pair", &[doc]);
@@ -292,8 +293,8 @@ struct Regulated<'b> {
     u: Phases<'b>,
     /// What is fed forward of it.
     forward: Option<Phases<'b>>,
-    /// Dead-time compensation of the compare values.
-    shifts: Option<Phases<'b, 3>>,
+    /// The measured current as a voltage, for the compensation of the dead time.
+    held: Option<Phases<'b>>,
 }
 
 /// A reference that turns: those of the last steps, as voltages K i_ref.

@@ -29,6 +29,8 @@ pub struct Limited<W> {
     /// Of the legs, about the middle of the bus.
     pub legs: [W; 3],
     pub reach: Reach,
+    /// Greatest less least of the phase voltages, at most the bus.
+    pub spread: W,
 }
 
 /// Leg voltages less a middle, within half the bus.
@@ -69,23 +71,31 @@ pub fn limit<W: Word>(
     let all = [u[0], u[1], u_c];
     if spread <= v_bus {
         let legs = about_middle(v_bus, all);
-        let reach = Reach::Inside;
-        return Limited { u, legs, reach };
+        return Limited {
+            u,
+            legs,
+            reach: Reach::Inside,
+            spread,
+        };
     }
     let (legs, reach) = match rule {
         Saturation::KeepAngle => {
             let bus = floor_shift(v_bus, k.scale_dropped);
-            let spread = greater(floor_shift(spread, k.scale_dropped), 1.0);
+            let short = greater(floor_shift(spread, k.scale_dropped), 1.0);
             let most = word(pow2(SCALE_BITS as i32) - 1.0);
-            let ratio = bus.divide(SCALE_BITS, spread, most);
+            let ratio = bus.divide(SCALE_BITS, short, most);
             let scaled = |bits| Coefficient::new(ratio, bits);
             let [a, b] = both(|x| scaled(SCALE_BITS).mul(u[x]));
             // That of half the sum.
             let middle = scaled(SCALE_BITS + 1).mul(max + min);
             let legs = centred(v_bus, [a, b, -(a + b)], middle);
             let u = phases(k, legs);
-            let reach = Reach::Outside;
-            return Limited { u, legs, reach };
+            return Limited {
+                u,
+                legs,
+                reach: Reach::Outside,
+                spread: v_bus,
+            };
         }
         Saturation::Nearest => (nearest(v_bus, all, max, min), Reach::Outside),
         Saturation::TorquePriority => {
@@ -96,7 +106,12 @@ pub fn limit<W: Word>(
     };
     let u = phases(k, legs);
     let legs = about_middle(v_bus, legs);
-    Limited { u, legs, reach }
+    Limited {
+        u,
+        legs,
+        reach,
+        spread: v_bus,
+    }
 }
 
 /// The terminal voltages of the nearest point of the hexagon.

@@ -11,6 +11,8 @@ pub struct Limited {
     pub u: Vector3<f64>,
     /// Position of the voltage before limiting.
     pub reach: Reach,
+    /// Greatest less least phase voltage, at most the bus.
+    pub spread: f64,
 }
 
 /// Limits the zero-sum phase voltages `u` to the hexagon of bus voltage `v_bus`; `f` are the
@@ -21,6 +23,7 @@ pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -
         return Limited {
             u: *u,
             reach: Reach::Inside,
+            spread,
         };
     }
     let mut reach = Reach::Outside;
@@ -40,7 +43,11 @@ pub fn limit(rule: Saturation, u: &Vector3<f64>, f: &Vector3<f64>, v_bus: f64) -
             kept + (near - kept) * blend
         }
     };
-    Limited { u, reach }
+    Limited {
+        u,
+        reach,
+        spread: v_bus,
+    }
 }
 
 /// Fraction of the limit over which torque priority blends into the nearest point.

@@ -106,7 +106,12 @@ impl<W: Word> CommonModeRule<W> {
         let Some(v_second) = &self.second else {
             return limited;
         };
-        let Limited { u, legs, reach } = limited;
+        let Limited {
+            u,
+            legs,
+            reach,
+            spread,
+        } = limited;
         let [a, b, c] = legs;
         let (high, low) = (greater(greater(a, b), c), lesser(lesser(a, b), c));
         let second = a + b + c - high - low;
@@ -127,6 +132,7 @@ impl<W: Word> CommonModeRule<W> {
             u: both(|x| u[x] - (legs[x] - lowered[x]) + mean),
             legs: lowered,
             reach,
+            spread,
         }
     }
 

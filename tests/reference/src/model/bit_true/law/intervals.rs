@@ -72,6 +72,7 @@ impl<W: Word> Table2<W> {
             u: kept,
             legs,
             reach,
+            ..
         } = limited;
         let (u, vectors, zero) = if pairing {
             let u = both(|x| now.k.k_third.mul(legs[x] - legs[x + 1]));

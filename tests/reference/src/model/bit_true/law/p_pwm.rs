@@ -30,7 +30,7 @@ impl<W: Word> PPwm<W> {
         let u_unsat = both(|x| now.j[x] + self.k_drop.mul(now.i[x]) + now.e[x]);
         // 10, 11
         let rule = &self.common_mode;
-        let Limited { u, legs, reach } = rule.limited(now, self.saturation, u_unsat, now.e);
+        let Limited { u, legs, reach, .. } = rule.limited(now, self.saturation, u_unsat, now.e);
         Decision {
             u_unsat,
             u,

@@ -27,7 +27,7 @@ impl<W: Word> Pdcc<W> {
             pair: options.modulation == Modulation::Pair,
             saturation: options.saturation,
             form: Form::new(options.saturation == Saturation::TorquePriority, scale)?,
-            dead_time: DeadTime::new(spec, scale)?,
+            dead_time: DeadTime::new(spec, options.modulation == Modulation::ThreePhase, scale)?,
             common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
             of_pair: CommonModeRule::of_pair(spec, options.modulation == Modulation::Pair, scale)?,
             table2: Table2::of(
@@ -63,8 +63,13 @@ impl<W: Word> Pdcc<W> {
     #[inline]
     fn pulses(&self, now: &Inputs<W>, u_unsat: [W; 2], e: [W; 2]) -> Modulated<W> {
         let rule = &self.common_mode;
-        let Limited { u, legs, reach } = rule.limited(now, self.saturation, u_unsat, e);
-        let shifts = self.dead_time.shifts(now, self.form.kept(now));
+        let Limited {
+            u,
+            legs,
+            reach,
+            spread,
+        } = rule.limited(now, self.saturation, u_unsat, e);
+        let shifts = self.dead_time.shifts(now, self.form.kept(now), spread);
         let command = if self.pair && !now.commutating {
             pulses::pair(now, u_unsat, shifts, &self.of_pair)
         } else {

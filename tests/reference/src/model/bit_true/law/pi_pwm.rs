@@ -68,7 +68,7 @@ impl<W: Word> PiPwm<W> {
             k_drop: scale.coefficient("k_drop", -scale.ohm * k_p)?,
             turning: Turning::new(spec, k_p, scale)?,
             k_i: scale.coefficient("k_i", spec.inverter.t_s / options.integral_time)?,
-            dead_time: DeadTime::new(spec, scale)?,
+            dead_time: DeadTime::new(spec, options.six_step == Switch::Off, scale)?,
             legs: match options.six_step {
                 Switch::On => CommonModeRule::of_pair(spec, true, scale)?,
                 Switch::Off => CommonModeRule::new(spec, options.common_mode, scale)?,
@@ -130,8 +130,13 @@ impl<W: Word> PiPwm<W> {
     /// The limited voltage by three pulses.
     #[inline]
     fn pulses(&self, now: &Inputs<W>, u_unsat: [W; 2], flow: [W; 2]) -> Modulated<W> {
-        let Limited { u, legs, reach } = self.legs.limited(now, self.saturation, u_unsat, now.e);
-        let shifts = self.dead_time.shifts(now, flow);
+        let Limited {
+            u,
+            legs,
+            reach,
+            spread,
+        } = self.legs.limited(now, self.saturation, u_unsat, now.e);
+        let shifts = self.dead_time.shifts(now, flow, spread);
         let command = pulses::three(now, legs, shifts, &self.legs, false);
         Modulated { u, reach, command }
     }
@@ -170,7 +175,12 @@ impl<W: Word> PiPwm<W> {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, self.dead_time.shifts(now, flow), &self.legs),
+            command: pulses::line(
+                now,
+                line,
+                self.dead_time.shifts(now, flow, word(0.0)),
+                &self.legs,
+            ),
             integral: [integral, word(0.0)],
             hysteresis: now.hysteresis,
             past: now.past,

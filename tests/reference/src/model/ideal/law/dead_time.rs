@@ -13,10 +13,13 @@ pub struct DeadTime {
     share: f64,
     /// Current up to which the shift is proportional, ampere.
     band: f64,
+    /// Current that loses nothing over the spread of the voltages, A/V; 0 unless three legs are pulsed in every period.
+    quiet: f64,
 }
 
 impl DeadTime {
-    pub fn new(spec: &Spec) -> Self {
+    /// `three`: whether three legs are pulsed in every period.
+    pub fn new(spec: &Spec, three: bool) -> Self {
         let inverter = &spec.inverter;
         let compensated = Variant::new(spec).compensates();
         Self {
@@ -26,14 +29,28 @@ impl DeadTime {
                 0.0
             },
             band: 0.1 * inverter.max_current,
+            quiet: if three {
+                inverter.pwm_period() / (24.0 * spec.motor.inductance)
+            } else {
+                0.0
+            },
         }
     }
 
     /// Fractions of the period added to duties; `kept` is the part of the measured current that the
-    /// law uses.
-    pub fn shifts(self, now: &Inputs, kept: f64) -> Vector3<f64> {
-        let mean = (phases(&now.i_ref) + phases(&now.i) * kept) / 2.0;
-        mean.map(|i| (i / self.band).clamp(-1.0, 1.0) * self.share)
+    /// law uses, and `spread` that of the limited voltages.
+    pub fn shifts(self, now: &Inputs, kept: f64, spread: f64) -> Vector3<f64> {
+        let (wanted, held) = (phases(&now.i_ref), phases(&now.i) * kept);
+        let at_the_middle = if now.delayed {
+            (wanted * 3.0 + held) / 4.0
+        } else {
+            (wanted + held) / 2.0
+        };
+        let quiet = self.quiet * spread;
+        at_the_middle.map(|i| {
+            let driven = i - i.clamp(-quiet, quiet);
+            (driven / self.band).clamp(-1.0, 1.0) * self.share
+        })
     }
 }
 

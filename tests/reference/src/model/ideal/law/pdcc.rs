@@ -24,7 +24,7 @@ impl Pdcc {
     pub fn new(spec: &Spec, options: &crate::Pdcc) -> Result<Self, Error> {
         Ok(Self {
             options: *options,
-            dead_time: DeadTime::new(spec),
+            dead_time: DeadTime::new(spec, options.modulation == Modulation::ThreePhase),
             common_mode: CommonModeRule::new(spec, options.common_mode)?,
             of_pair: CommonModeRule::of_vectors(spec)?,
             table2: Table2::of(spec, options.modulation, (options.saturation, options.zero))?,
@@ -57,7 +57,9 @@ impl Pdcc {
         let limited = self
             .common_mode
             .limited(now, options.saturation, u_unsat, e);
-        let shifts = self.dead_time.shifts(now, kept_by_deadbeat(now));
+        let shifts = self
+            .dead_time
+            .shifts(now, kept_by_deadbeat(now), limited.spread);
         let command = if options.modulation == Modulation::Pair && !now.commutating {
             pulses::pair(now, &phases(u_unsat), &shifts, self.of_pair)
         } else {

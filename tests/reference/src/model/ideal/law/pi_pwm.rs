@@ -38,7 +38,7 @@ impl PiPwm {
             turning: Variant::new(spec).turns_reference(),
             k_p: TAU * options.bandwidth * spec.motor.inductance,
             k_i: spec.inverter.t_s / options.integral_time,
-            dead_time: DeadTime::new(spec),
+            dead_time: DeadTime::new(spec, options.six_step == Switch::Off),
             legs: match options.six_step {
                 Switch::On => CommonModeRule::of_vectors(spec)?,
                 Switch::Off => CommonModeRule::new(spec, options.common_mode)?,
@@ -80,7 +80,7 @@ impl PiPwm {
     /// The limited voltage by three pulses.
     fn pulses(&self, now: &Inputs, u_unsat: &Vector2<f64>) -> Modulated {
         let limited = self.legs.limited(now, self.saturation, u_unsat, &now.e);
-        let shifts = self.dead_time.shifts(now, 1.0);
+        let shifts = self.dead_time.shifts(now, 1.0, limited.spread);
         Modulated {
             u: clarke(&limited.u),
             reach: limited.reach,
@@ -117,7 +117,7 @@ impl PiPwm {
                 Reach::Outside
             },
             vector: 0,
-            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0), self.legs),
+            command: pulses::line(now, line, &self.dead_time.shifts(now, 1.0, 0.0), self.legs),
             integral: [integral, 0.0],
             rises: now.rises,
             past: now.past,
