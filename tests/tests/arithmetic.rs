@@ -37,7 +37,8 @@ fn interpreted(
         build(&inputs, table).named("result"),
     );
     let graph = verify(b.finish()).expect("the program is right");
-    let outputs = Machine::new(&graph).step(operands);
+    let mut machine = Machine::new(&graph);
+    let outputs = machine.step(operands);
     outputs.expect("no value leaves its interval")[0]
 }
 

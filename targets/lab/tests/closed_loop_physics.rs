@@ -304,7 +304,7 @@ fn compensated_dead_time_has_no_effect() {
             let pairs = samples.iter().zip(&none);
             pairs.map(|(i, none)| (i - none).powi(2)).sum()
         };
-        let lost = distance(&samples(&with, ""));
+        let lost = distance(&samples(&with, ",dead_time_compensation=off"));
         let kept = distance(&samples(&with, ",dead_time_compensation=on"));
         let part = (kept / lost).sqrt();
         // 0.07 to 0.31 except with a held EMF. Wrong: no compensation; inverted 1.7 to 2.

@@ -353,10 +353,17 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
     "dead_time_compensation",
     "on",
 )
-.preset("off")
+.by_default(
+    "`on` with three pulsed legs where the dead time moves the current by more than 2 % of `rated_current` in a period (v_bus dead_time/L), else `off`",
+    &[("on", "the dead time would make the torque ripple")],
+)
 .about(
     "Dead-time compensation of the compare values, by the sign of the current; needs `dead_time`",
 );
+
+/// Change of the current in a period by the dead time, over the rated current, above which it is compensated by
+/// default: below, it ripples by less than a percent.
+const FELT_DEAD_TIME: f64 = 0.02;
 
 /// The rule of the mean of three pulsed legs.
 pub(crate) const COMMON_MODE: Rule = rule::choice::<CommonMode>("common_mode", "clamped_low")
@@ -850,14 +857,21 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
     Some(whole as u32)
 }
 
-/// Dead-time compensation, which needs a stated dead time.
+/// Dead-time compensation, which needs a stated dead time. `pulses_three_legs`: whether three legs are pulsed in every
+/// period.
 pub(crate) fn read_dead_time_compensation(
     reader: &Reader,
     drive: &Surroundings,
+    pulses_three_legs: bool,
     errors: &mut Collector,
 ) -> bool {
     const OPTION: &str = "dead_time_compensation";
-    let is_on = reader.switch(errors, OPTION) == Some(true);
+    let felt = || {
+        let moved = drive.v_bus? * drive.dead_time / drive.inductance?;
+        Some(moved > FELT_DEAD_TIME * drive.rated_current.as_ref()?.0)
+    };
+    let by_default = || pulses_three_legs && felt().unwrap_or(false);
+    let is_on = reader.switch(errors, OPTION).unwrap_or_else(by_default);
     if is_on
         && drive.dead_time <= 0.0
         && !drive.in_error.contains(&"dead_time")

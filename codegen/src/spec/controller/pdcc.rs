@@ -81,7 +81,8 @@ impl Options for PdccSpec {
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let modulation: Modulation = reader.choice_or_preset(errors, "modulation", &[]);
         let without_sectors = modulation == Modulation::ThreePhase;
-        let dead_time_compensation = read_dead_time_compensation(reader, surroundings, errors);
+        let dead_time_compensation =
+            read_dead_time_compensation(reader, surroundings, without_sectors, errors);
         if without_sectors {
             refuse_commutation(reader, ["modulation", "three_phase"], errors);
         }

@@ -186,7 +186,12 @@ impl Options for PiPwmSpec {
             modulation,
             zero,
             saturation,
-            dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors),
+            dead_time_compensation: read_dead_time_compensation(
+                reader,
+                surroundings,
+                traits.pulses_three_legs,
+                errors,
+            ),
             common_mode,
             common,
         })
