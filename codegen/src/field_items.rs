@@ -8,7 +8,7 @@
 use crate::diagnostics::Location;
 use crate::spec::ast::{Field, Section, Value};
 use crate::spec::field_texts::{FieldText, kind_texts, own_texts, section_texts, shared_texts};
-use crate::spec::{KINDS, Kind, Rule, SpecAst, schema};
+use crate::spec::{KINDS, Kind, Rule, SpecAst, fields};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::quote;
 
@@ -84,7 +84,7 @@ fn section<'a>(section: &'a Section, name: &'static str) -> impl Iterator<Item =
     let module = self::name(name);
     section.fields.iter().filter_map(move |field| {
         let given = written(field)?;
-        (schema::section_of(&field.name) == Some(name)).then(|| quote!(#module::#given))
+        (fields::section_of(&field.name) == Some(name)).then(|| quote!(#module::#given))
     })
 }
 

@@ -1,4 +1,6 @@
-//! Inputs of a step: phase currents and the Hall code (semantics, steps 1 and 2).
+//! Inputs of a step: phase currents and the Hall code (semantics, steps 1 and 2). Currents arrive as
+//! words: the runtime's supervisor has made them of ADC counts, by the numbers of
+//! `laws::supervision`.
 
 use super::Lowering;
 use crate::ir::{Expr, Flag, Interval, Lut, Memory, Phases, named};

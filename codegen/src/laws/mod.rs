@@ -16,6 +16,7 @@ pub mod pdcc;
 pub mod phcc;
 pub mod pi_pwm;
 mod start;
+mod supervision;
 mod trust;
 mod whole_vectors;
 mod word_choice;

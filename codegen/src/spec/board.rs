@@ -4,8 +4,8 @@
 //! under a motor file's own where that names the board, over them where the call does.
 
 use super::ast::{Board, Field, Name, OF_CORE, Section, SpecAst, TARGET, Value};
+use super::fields;
 use super::reader::Reader;
-use super::schema;
 use super::sensing::{IN_PHASE, LOW_SIDE};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Diagnostic, Location};
@@ -124,9 +124,9 @@ fn unreadable(
     at: &Location,
 ) -> Vec<Diagnostic> {
     let mut errors = Collector::new();
-    let reader = Reader::new("inverter", whole, schema::INVERTER, at);
+    let reader = Reader::new("inverter", whole, fields::INVERTER, at);
     for field in whole.fields.iter().filter(|field| is_chosen(field)) {
-        let rule = schema::INVERTER.iter().find(|rule| rule.name == field.name);
+        let rule = fields::INVERTER.iter().find(|rule| rule.name == field.name);
         match (&field.value, rule) {
             (Value::Malformed(error), _) => errors.push((**error).clone()),
             (_, Some(rule)) => reader.read_number(&mut errors, rule),
@@ -164,7 +164,7 @@ fn part(field: &'static str, written: &Field) -> Part {
 
 /// A voltage of a section, volt, and as written; none where it cannot be read.
 fn volts(section: &Section, name: &'static str, at: &Location) -> Option<(f64, Part)> {
-    let reader = Reader::new("inverter", section, schema::INVERTER, at);
+    let reader = Reader::new("inverter", section, fields::INVERTER, at);
     let mut untold = Collector::new();
     let given = reader.plain_quantity(&mut untold, name);
     let is_right = untold.finish().is_none();

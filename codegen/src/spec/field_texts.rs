@@ -2,9 +2,9 @@
 //! inverter's field is its row of the reference page, that of an option its row of the table.
 
 use super::controller::{KINDS, Kind, common};
+use super::fields::{INVERTER, MOTOR};
 use super::option_texts::{default, sentence, values};
 use super::rule::Rule;
-use super::schema::{INVERTER, MOTOR};
 
 /// The page that explains the fields of motor and inverter.
 const REFERENCE: &str = include_str!("reference.md");

@@ -7,7 +7,7 @@ use super::ast::{Board, Field, Name, Section, SpecAst, Value};
 use super::board_library::library_file;
 use super::field_rule::FieldRule;
 use super::value::{parse_value, plain_number, unreadable};
-use super::{load_motor_file, schema};
+use super::{fields, load_motor_file};
 use crate::diagnostics::{Anchors, Diagnostic, Diagnostics, Location, catalogue};
 use proc_macro2::{Delimiter, Literal, Punct, Spacing, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -224,7 +224,7 @@ impl Entry {
                     is_number(before) && is_number(behind)
                 }
                 (Some(TokenTree::Ident(_)), [TokenTree::Ident(word)]) => {
-                    schema::section_of(&word.to_string()).is_none()
+                    fields::section_of(&word.to_string()).is_none()
                 }
                 _ => false,
             }
@@ -250,7 +250,7 @@ impl Entry {
         let head = &self.tokens[..1];
         if value.is_empty() {
             let name = name.to_string();
-            let examples = schema::field(&name).examples(&[]);
+            let examples = fields::field(&name).examples(&[]);
             return Err(catalogue::missing_value(&location(head), &name, &examples));
         }
         // `a: 1 ohm b: 2 H`: the comma in between was forgotten.
@@ -336,7 +336,7 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
             )?;
         }
         ("controller", tokens) => read_controller(input, at, tokens)?,
-        _ if schema::section_of(&name).is_some_and(|section| section == "controller") => {
+        _ if fields::section_of(&name).is_some_and(|section| section == "controller") => {
             return Err(catalogue::syntax(
                 &at,
                 &format!("`{name}` is an option; {OPTIONS}"),
@@ -349,7 +349,7 @@ fn read_section(input: &mut MacroInput, entry: &Entry) -> Result<(), Diagnostic>
             let fields: Vec<&str> = fields.iter().map(String::as_str).collect();
             input
                 .ast
-                .unknown_section(&at, &name, &known, schema::section_of_most(&fields));
+                .unknown_section(&at, &name, &known, fields::section_of_most(&fields));
         }
     }
     Ok(())
@@ -397,7 +397,7 @@ fn read_controller(
         kind => (kind, TokenStream::new()),
     };
     let kind_location = location(kind);
-    let word = parse_value(schema::field("kind"), &text_of(kind), &kind_location);
+    let word = parse_value(fields::field("kind"), &text_of(kind), &kind_location);
     if kind.is_empty() || !matches!(word, Value::Word(_)) {
         return Err(expected_section(value, "controller"));
     }
@@ -430,7 +430,7 @@ fn read_fields(
     for entry in fields(tokens) {
         match entry.split() {
             Ok((name, head, value)) => section.fields.push(Field {
-                value: read_value(schema::field(&name), value),
+                value: read_value(fields::field(&name), value),
                 name,
                 name_location: location(head),
                 location: location(value),

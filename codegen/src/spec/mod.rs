@@ -20,19 +20,19 @@ mod emf_shape;
 mod envelope;
 mod field_rule;
 pub(crate) mod field_texts;
+pub(crate) mod fields;
 mod harmonics;
 pub(crate) mod health;
 mod load;
 mod macro_syntax;
 mod model;
 mod normalised;
+mod option_row;
 mod option_texts;
-mod options;
 mod pwm_ripple;
 pub(crate) mod reader;
 mod rule;
 mod sampled_halls;
-pub(crate) mod schema;
 mod sensing;
 mod set_point;
 #[cfg(test)]
@@ -57,6 +57,7 @@ pub use controller::{
 };
 pub use emf_shape::{proportional_current, zero_sum_integral};
 pub use envelope::Envelope;
+pub use fields::section_of;
 pub use harmonics::{Harmonics, ORDERS};
 pub use load::{load_motor_file, motor_text, reason_of};
 pub use macro_syntax::{FileName, MacroInput, parse_macro};
@@ -67,7 +68,6 @@ pub use model::{
 pub use option_texts::help as option_help;
 pub use rule::Rule;
 pub use sampled_halls::MOST_RIPPLE;
-pub use schema::section_of;
 pub use sensing::{
     CurrentSensing, CurrentSensor, CurrentSum, RATIO_BITS, SensedPhases, SensingTimes,
     SensingWindow,

@@ -129,8 +129,8 @@ mod tests {
     use super::{KINDS, controller, default, help, sentence, shared, takers, values};
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
+    use crate::spec::fields;
     use crate::spec::rule::{Kind, Preset, Rule};
-    use crate::spec::schema;
     use crate::spec::value::parse_value;
     use std::path::Path;
 
@@ -233,7 +233,7 @@ mod tests {
         for rule in KINDS.iter().flat_map(controller::Kind::rules) {
             assert!(!rule.about.is_empty(), "{}", rule.name);
             let value = match rule.preset {
-                Preset::Value(text) => parse_value(schema::field(rule.name), text, &at),
+                Preset::Value(text) => parse_value(fields::field(rule.name), text, &at),
                 Preset::Rule(text, reasons) => {
                     assert!(!text.is_empty() && !reasons.is_empty(), "{}", rule.name);
                     for (value, why) in reasons {

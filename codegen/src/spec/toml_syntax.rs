@@ -9,7 +9,7 @@
 use super::ast::{Board, BoardFile, Field, Name, Section, SpecAst, Value};
 use super::board_library::{BOARDS, file_of};
 use super::field_rule::FieldRule;
-use super::schema;
+use super::fields;
 use super::value::{free_text, no_text, parse_value, plain_number, unreadable};
 use crate::diagnostics::{Diagnostic, Diagnostics, Location, catalogue};
 use std::ops::Range;
@@ -66,7 +66,7 @@ pub fn parse_toml(text: &str, file_name: &str) -> Result<SpecAst, Diagnostics> {
             "controller" => file.read_fields(&mut ast.controller, at, table),
             "assumed" => file.read_assumed(&mut ast, table, &["motor", "inverter"]),
             "source" => file.read_source(&mut ast, table),
-            _ => ast.unknown_section(&at, name, &SECTIONS, schema::section_of_most(&keys(table))),
+            _ => ast.unknown_section(&at, name, &SECTIONS, fields::section_of_most(&keys(table))),
         }
     }
     // `name` stands in `[motor]` but belongs to the drive.
@@ -138,7 +138,7 @@ pub fn parse_board(text: &str, file_name: &str) -> Result<BoardFile, Diagnostics
             }
             (name, table) => {
                 let fields = table.map_or(vec![], keys);
-                ast.unknown_section(&at, name, &BOARD_SECTIONS, schema::section_of_most(&fields));
+                ast.unknown_section(&at, name, &BOARD_SECTIONS, fields::section_of_most(&fields));
             }
         }
     }
@@ -199,7 +199,7 @@ impl File<'_> {
             section.fields.push(Field {
                 name: name.to_owned(),
                 name_location: self.key(table.key(name), item),
-                value: self.read_value(schema::field(name), item, &location),
+                value: self.read_value(fields::field(name), item, &location),
                 location,
                 assumed: None,
             });
@@ -211,7 +211,7 @@ impl File<'_> {
             let Some(text) = item.as_str() else {
                 continue;
             };
-            match free_text(schema::field(key), text, &self.span(item.span())) {
+            match free_text(fields::field(key), text, &self.span(item.span())) {
                 Ok(text) => ast.source.push((key.to_owned(), text)),
                 Err(error) => ast.malformed.push(error),
             }
@@ -277,17 +277,17 @@ impl File<'_> {
         let (Some(value), Some((reason, reason_location))) = (value, reason) else {
             let given = value.or(Some(item)).and_then(Item::as_str);
             let values = given.map_or_else(
-                || schema::field(name).examples(&[]),
+                || fields::field(name).examples(&[]),
                 |given| vec![given.to_owned()],
             );
             return Err(catalogue::assumption(&name_location, name, &values));
         };
-        let reason = free_text(schema::field(name), reason, &reason_location)?;
+        let reason = free_text(fields::field(name), reason, &reason_location)?;
         let location = self.span(value.span());
         Ok(Field {
             name: name.to_owned(),
             name_location,
-            value: self.read_value(schema::field(name), value, &location),
+            value: self.read_value(fields::field(name), value, &location),
             location,
             assumed: Some(reason),
         })

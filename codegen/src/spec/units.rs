@@ -1,5 +1,5 @@
-//! Units of the specification: one table of the names that data sheets use, with factors and sources,
-//! and one of the quantities that products and quotients of them make.
+//! Units of the specification: a table of the names that data sheets use, with factors and sources
+//! (`names`), and one of the quantities that products and quotients of them make (`quantities`).
 //!
 //! A unit is read as a product: `V/(rad/s)`, `oz-in-s2`, `mNm/Arms`, `V/1000rpm`. A space, hyphen,
 //! point or `*` multiplies, a number behind a name is its power, a number before one its multiple.
@@ -8,12 +8,12 @@
 //! Mechanical speed is in rad/s, so `V/krpm` and `V/(rad/s)` are one quantity; `V/Hz` and `Wb` are
 //! flux linkages per electrical angle, another one.
 
+mod names;
 mod quantities;
 mod reading;
-mod table;
 
+pub use names::{NAMES, Name};
 pub use quantities::Dimension;
-pub use table::{NAMES, Name};
 
 use super::basis::Basis;
 use crate::diagnostics::engineering;

@@ -586,11 +586,11 @@ mod tests {
     use super::parse_value;
     use crate::diagnostics::Location;
     use crate::spec::ast::Value;
-    use crate::spec::schema;
+    use crate::spec::fields;
 
     fn parse(field: &str, text: &str) -> Value {
         parse_value(
-            schema::field(field),
+            fields::field(field),
             text,
             &Location::File {
                 file: "t".into(),

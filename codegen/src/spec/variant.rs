@@ -1,7 +1,7 @@
 //! Front end: a controller variant of the command line, `pdcc:modulation=pair,advance=1.5`.
 
 use super::ast::{Field, Section, SpecAst, Value};
-use super::schema;
+use super::fields;
 use super::value::parse_value;
 use crate::diagnostics::{Collector, Diagnostics, Location, catalogue};
 
@@ -22,7 +22,7 @@ pub fn apply_variant(ast: &mut SpecAst, variant: &str) -> Result<(), Diagnostics
         location: Some(at(0)),
         ..Section::default()
     };
-    match parse_value(schema::field("kind"), kind, &at(0)) {
+    match parse_value(fields::field("kind"), kind, &at(0)) {
         Value::Word(word) => section.fields.push(Field {
             name: "kind".to_owned(),
             name_location: at(0),
@@ -41,7 +41,7 @@ pub fn apply_variant(ast: &mut SpecAst, variant: &str) -> Result<(), Diagnostics
                 section.fields.push(Field {
                     name: name.to_owned(),
                     name_location: at(start),
-                    value: parse_value(schema::field(name), value, &location),
+                    value: parse_value(fields::field(name), value, &location),
                     location,
                     assumed: None,
                 });

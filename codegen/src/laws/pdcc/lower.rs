@@ -1,4 +1,5 @@
 //! Predictive deadbeat control as a program: the shared step, the voltage limit and the modulator.
+//! The law's voltage is [`CurrentLoop::deadbeat`], which other controllers predict with as well.
 
 use crate::blocks::set_point::Gain;
 use crate::blocks::{CommonModeRule, Hexagon, Modulator, Priority, Scale};

@@ -11,8 +11,8 @@ use crate::spec::controller::common::{
     FIELD_WEAKENING, HALL_LEARNING, HallEdges, Surroundings, TORQUE_LEARNING, refuse,
 };
 use crate::spec::controller::{self, KINDS, Kind};
+use crate::spec::fields;
 use crate::spec::reader::Reader;
-use crate::spec::schema;
 use crate::spec::words::Words as _;
 use crate::spec::{BusSource, ControllerSpec, RotorSensing, RotorSource, TABLE2, ZeroVector};
 use std::f64::consts::TAU;
@@ -46,7 +46,7 @@ pub(super) fn read(
     let rules = kind.rules().into_iter().chain(controller::rules());
     let reader = Reader::new("controller", section, rules, fallback);
     reader.check_fields(errors, |field, errors| {
-        schema::misplaced("controller", field, errors)
+        fields::misplaced("controller", field, errors)
     });
     let rated_frequency = match (motor.pole_pairs, &motor.rated_speed) {
         (Some(pairs), Some(speed)) => Some(f64::from(pairs) * speed.si / TAU),

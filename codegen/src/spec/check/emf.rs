@@ -7,8 +7,8 @@
 use crate::diagnostics::{Collector, Diagnostic, catalogue, engineering};
 use crate::spec::EmfShape;
 use crate::spec::ast::Basis;
+use crate::spec::fields;
 use crate::spec::reader::{Given, Reader};
-use crate::spec::schema;
 use crate::spec::units::Dimension;
 
 /// The fields that state it, in the order in which they are taken.
@@ -488,7 +488,7 @@ fn read_torque_constant<'a>(
                 (Basis::PerPeakAmpere, Reading::PerPeakAmpere),
                 (Basis::PerRmsAmpere, Reading::PerRmsAmpere),
             ];
-            let references = schema::field("torque_constant").references().iter();
+            let references = fields::field("torque_constant").references().iter();
             let forms: Vec<(String, String)> = references
                 .zip(readings)
                 .map(|((_, meaning), (_, reading))| {

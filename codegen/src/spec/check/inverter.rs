@@ -4,9 +4,9 @@ use super::sensing::{self, Sensing};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Location, at_least, at_most, engineering};
 use crate::spec::ast::Field;
+use crate::spec::fields;
 use crate::spec::model::period_within;
 use crate::spec::reader::{Given, Reader};
-use crate::spec::schema;
 use crate::spec::sensing::CurrentSensor;
 use crate::spec::units::Dimension;
 use crate::spec::{BusSource, Fade, SensedPhases};
@@ -572,7 +572,7 @@ fn refuse_beside(reader: &Reader, field: &Field, names: &[&str], errors: &mut Co
 
 /// Reports the field `name` of the inverter that another one needs.
 fn need(at: &Location, field: &str, name: &str, errors: &mut Collector) {
-    let example = schema::field(name).example();
+    let example = fields::field(name).example();
     errors.push(catalogue::needed_field(
         at,
         field,

@@ -10,7 +10,6 @@ mod controller;
 mod currents;
 mod emf;
 mod emf_shape;
-mod finish;
 mod inverter;
 mod motor;
 mod origins;
@@ -18,13 +17,14 @@ mod relations;
 mod sensing;
 mod sensing_window;
 mod trips;
+mod whole_inverter;
 
 pub use origins::{Origin, Origins};
 
 use self::inverter::Inverter;
 use self::motor::Motor;
 use super::reader::Reader;
-use super::{MOST_RIPPLE, Spec, SpecAst, schema};
+use super::{MOST_RIPPLE, Spec, SpecAst, fields};
 use crate::diagnostics::catalogue::Part;
 use crate::diagnostics::{Code, Collector, Diagnostic, Diagnostics, catalogue};
 
@@ -38,16 +38,16 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     check_name(ast, &mut errors);
 
     let fallback = &ast.name.location;
-    let motor_reader = Reader::new("motor", &ast.motor, schema::MOTOR, fallback);
+    let motor_reader = Reader::new("motor", &ast.motor, fields::MOTOR, fallback);
     let (whole_inverter, of_board) = ast.whole_inverter();
     errors.extend(of_board);
-    let inverter_reader = Reader::new("inverter", &whole_inverter, schema::INVERTER, fallback);
+    let inverter_reader = Reader::new("inverter", &whole_inverter, fields::INVERTER, fallback);
     motor_reader.check_fields(&mut errors, |field, errors| {
-        schema::misplaced("motor", field, errors)
+        fields::misplaced("motor", field, errors)
     });
     let motor = motor::read(&motor_reader, &mut errors);
     inverter_reader.check_fields(&mut errors, |field, errors| {
-        schema::misplaced("inverter", field, errors)
+        fields::misplaced("inverter", field, errors)
     });
     let inverter = inverter::read(&inverter_reader, &mut errors);
     let of_halls = ["hall_glitches", "minimum_speed"];
@@ -82,7 +82,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         (controller.as_ref(), &whole_controller),
         &mut errors,
     );
-    let finished = finish::inverter(
+    let finished = whole_inverter::inverter(
         &inverter_reader,
         &inverter,
         &motor,
@@ -121,7 +121,7 @@ const UNLIKE: f64 = 2.0;
 fn check_gain(ast: &SpecAst, inverter: &Inverter, warnings: &mut Vec<Diagnostic>) -> Option<()> {
     let board = ast.board.as_ref()?;
     let section = &board.file.as_ref()?.inverter;
-    let reader = Reader::new("inverter", section, schema::INVERTER, &board.name.location);
+    let reader = Reader::new("inverter", section, fields::INVERTER, &board.name.location);
     let of_board = inverter::gain(&reader, inverter.sensing.phases)?;
     let own = inverter.adc.as_ref()?;
     let ratio = own.gain / of_board.gain;

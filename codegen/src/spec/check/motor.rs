@@ -4,9 +4,9 @@ use super::emf::{self, Emf, Winding};
 use super::{agreement, angle, emf_shape};
 use crate::diagnostics::{Collector, catalogue, engineering, significant};
 use crate::spec::ast::{Basis, Value};
+use crate::spec::fields;
 use crate::spec::model::extreme_sectors;
 use crate::spec::reader::{Given, Reader};
-use crate::spec::schema;
 use crate::spec::units::Dimension;
 use crate::spec::{AngleSensor, EmfShape, HALL_ANGLES, MotorSpec, RotorSource};
 
@@ -147,7 +147,7 @@ fn read_winding_value(
         [] => {
             let unit = if name == "resistance" { "ohm" } else { "H" };
             let half = engineering(given.si / 2.0, unit);
-            let forms: Vec<(String, String)> = schema::field(name)
+            let forms: Vec<(String, String)> = fields::field(name)
                 .references()
                 .iter()
                 .map(|(basis, meaning)| {

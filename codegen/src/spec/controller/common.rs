@@ -3,7 +3,7 @@
 use super::core::{Core, Target};
 use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, at_least, at_most, engineering, significant};
-use crate::spec::options::{Row, if_on, number, word};
+use crate::spec::option_row::{Row, if_on, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule::{self, Rule};
 use crate::spec::units::Dimension as D;

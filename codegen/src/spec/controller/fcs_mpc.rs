@@ -7,7 +7,7 @@ use super::off_leg::{OFF_LEG, OffLegModel, read_off_leg};
 use super::{Options, TurnsOff};
 use crate::diagnostics::{Collector, at_most, catalogue, engineering};
 use crate::spec::health::Drive;
-use crate::spec::options::{Row, if_any, number, word};
+use crate::spec::option_row::{Row, if_any, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;

@@ -27,7 +27,7 @@ pub(crate) use table2::TABLE2;
 pub use table2::ZeroVector;
 
 use super::health::Drive;
-use super::options::{Row, lines};
+use super::option_row::{Row, lines};
 use super::reader::Reader;
 use super::rule::Rule;
 use crate::diagnostics::catalogue::Part;

@@ -7,7 +7,7 @@ use super::common::{
 };
 use crate::diagnostics::Collector;
 use crate::spec::MotorSpec;
-use crate::spec::options::{Row, number, word};
+use crate::spec::option_row::{Row, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;

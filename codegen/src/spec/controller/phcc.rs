@@ -7,7 +7,7 @@ use crate::diagnostics::catalogue::{self, Part};
 use crate::diagnostics::{Collector, Diagnostic};
 use crate::spec::ast::Value;
 use crate::spec::health::Drive;
-use crate::spec::options::{Row, number, word};
+use crate::spec::option_row::{Row, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;

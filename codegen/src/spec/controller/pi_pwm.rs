@@ -8,7 +8,7 @@ use super::common::{
 use super::table2::{TABLE2, ZERO, ZeroVector, read_zero, refuse_pulse_options, refuse_turned};
 use super::{Options, TurnsOff};
 use crate::diagnostics::Collector;
-use crate::spec::options::{Row, if_on, number, word};
+use crate::spec::option_row::{Row, if_on, number, word};
 use crate::spec::reader::Reader;
 use crate::spec::rule;
 use crate::spec::units::Dimension as D;

@@ -348,8 +348,8 @@ fn a_value_that_is_printed_reads_back() {
     let mut random = fastrand::Rng::with_seed(24);
     for spelling in crate::spec::units::usual_spellings() {
         let unit = Unit::from_symbol(spelling).expect("is a unit");
-        let field = crate::spec::schema::field_of(unit.dimension);
-        let field = crate::spec::schema::field(field);
+        let field = crate::spec::fields::field_of(unit.dimension);
+        let field = crate::spec::fields::field(field);
         for _ in 0..50 {
             let value = random.f64() * 10_f64.powi(random.i32(-6..7));
             let written = format!("{value} {spelling}");

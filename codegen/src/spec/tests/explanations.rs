@@ -2,7 +2,7 @@
 
 use super::diagnostics::{COMPLETE, found_in_file};
 use crate::diagnostics::Code;
-use crate::spec::schema;
+use crate::spec::fields;
 
 /// What no motor file makes by itself.
 const ELSEWHERE: [Code; 6] = [
@@ -45,7 +45,7 @@ fn with_lines(lines: &str, other: &str) -> String {
             .lines()
             .position(|there| there.starts_with(&format!("{name} =")));
         let mut all: Vec<&str> = text.lines().collect();
-        match (present, schema::section_of(name)) {
+        match (present, fields::section_of(name)) {
             (Some(at), _) if !added.contains(&name) => all[at] = line,
             (Some(at), _) => all.insert(at, line),
             (None, Some(section)) => {

@@ -1,7 +1,7 @@
 //! Reads a product of units.
 
+use super::names::{NAMES, prefix};
 use super::quantities::Powers;
-use super::table::{NAMES, prefix};
 use crate::spec::basis::Basis;
 
 /// A product of units as far as it was read.

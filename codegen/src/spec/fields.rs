@@ -1,4 +1,5 @@
-//! The fields with their kinds of values and limits.
+//! The fields of motor and inverter, each with its quantity, least and greatest value; those of the
+//! controller are its options ([`controller`]).
 //!
 //! The limits catch wrong units and decimal points; they are wider than any motor that this crate
 //! is made for. The reference table for users is the documentation of [`crate::spec`].

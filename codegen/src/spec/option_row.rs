@@ -1,4 +1,5 @@
-//! The table of options: one row per option of a controller.
+//! A row of the tables of options: the options of a controller are `OWN` of its file in
+//! [`controller`](super::controller), those that all share are in `controller::common`.
 //!
 //! Reader, normalised specification, reference page, help and the tests' covering arrays use the
 //! same rows. Relations between options are in the checks of their controller.
