@@ -175,7 +175,7 @@ struct Passage {
     computed: Range<usize>,
     /// Place of its guard's flag.
     condition: Option<usize>,
-    /// Whether it ran in the last step; if not, its values are 0.
+    /// Whether it ran when it was met last; if not, its values are 0.
     ran: bool,
     /// Place of each join, of the value inside the stage, and of the one outside.
     joins: Vec<[usize; 3]>,
@@ -255,6 +255,7 @@ impl<'g> Routine<'g> {
             let computed = &self.computed[passage.computed.clone()];
             let runs = passage.condition.is_none_or(|flag| values[flag] == 1);
             if runs {
+                passage.ran = true;
                 for node in computed {
                     let value = node.op.apply(|operand| values[operand.index()], entry);
                     if !node.keep(values, value) {
@@ -262,11 +263,11 @@ impl<'g> Routine<'g> {
                     }
                 }
             } else if passage.ran {
+                passage.ran = false;
                 for node in computed {
                     values[node.value.index()] = 0;
                 }
             }
-            passage.ran = runs;
             for &[join, taken, otherwise] in &passage.joins {
                 values[join] = values[if runs { taken } else { otherwise }];
             }

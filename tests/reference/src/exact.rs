@@ -316,6 +316,8 @@ impl Shift {
     #[track_caller]
     pub fn floor_product_of_halves<W: Word>(&self, x: Halves<W>, y: W) -> W {
         let _site = W::here();
+        debug_assert!(self.bits > 16, "shift {}", self.bits);
+        y.debug_at_most(2.0 * TWO_32);
         floor_weighted(x.product(y), self.cut_weight)
     }
 
@@ -452,6 +454,14 @@ mod tests {
                 product >> s,
                 "{c} * {x} >> {s}"
             );
+            if s > 16 {
+                let halves = Halves::of(c as f64);
+                assert_eq!(
+                    shift.floor_product_of_halves(halves, x as f64) as i128,
+                    product >> s,
+                    "{c} * {x} >> {s}"
+                );
+            }
         }
     }
 

@@ -8,8 +8,8 @@ use crate::ir::{Expr, Phases, named};
 const SOFT_BAND: f64 = 0.1;
 
 /// Current of a leg below which it loses nothing, over (max - min) T/L of three pulsed legs: half the
-/// ripple of a leg midway between the others, 1/12, where its current crosses zero. The ripple falls as the leg
-/// leaves the middle.
+/// ripple of a leg midway between the others, 1/12, where its current crosses zero. Of centred pulses the ripple
+/// falls as the leg leaves the middle.
 const QUIET: f64 = 1.0 / 24.0;
 
 impl<'b> CurrentLoop<'_, 'b> {
@@ -45,7 +45,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         let dead_time = engineering(inverter.dead_time, "s");
         let doc = format!("Voltage lost to {dead_time} of dead time");
         let limit = l.volts_word(lost);
-        // From the sample to the end of the target period it turns evenly.
+        // From the sample to the end of the target period a proportional current turns evenly.
         let sum = reference + held;
         named! {
             let flow = if self.options.delay == 1 { reference + (sum >> 1) } else { sum };

@@ -25,7 +25,7 @@ pub fn unlimited_voltage<'b>(l: &Lowering<'b>, volts: Phases<'b>) -> Phases<'b> 
 }
 
 impl<'b> CurrentLoop<'_, 'b> {
-    /// Step 9: the deadbeat voltage of phases a, b, with dead-time compensation if the law has it.
+    /// Step 9: the deadbeat voltage of phases a, b; `compensates`: whether the law compensates the dead time.
     pub fn deadbeat(&self, front: &Front<'b>, compensates: bool) -> Deadbeat<'b> {
         let (reference, i) = (front.reference, front.currents.pair());
         if let Some(held) = &front.held {

@@ -66,6 +66,7 @@ pub(super) fn read(
             .as_ref()
             .map(|given| (given.si, given.part.clone())),
         dead_time: inverter.dead_time.as_ref().map_or(0.0, |given| given.si),
+        pwm_per_control: inverter.pwm_per_control,
         in_error,
         must_be_low: inverter.sensing.must_be_low(),
         reads_off_legs: inverter.sensing.reads_off_legs(),

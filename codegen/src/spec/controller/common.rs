@@ -354,15 +354,15 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
     "on",
 )
 .by_default(
-    "`on` with three pulsed legs where the dead time moves the current by more than 2 % of `rated_current` in a period (v_bus dead_time/L), else `off`",
-    &[("on", "the dead time would make the torque ripple")],
+    "`on` with a stated `dead_time` and three pulsed legs, but `off` with `reference: proportional` where the dead time moves the current by at most 2 % of `rated_current` in a control period (pwm_per_control v_bus dead_time/L), unless `emf: model`",
+    &[("on", "the dead time would take torque, or make it ripple")],
 )
 .about(
     "Dead-time compensation of the compare values, by the sign of the current; needs `dead_time`",
 );
 
-/// Change of the current in a period by the dead time, over the rated current, above which it is compensated by
-/// default: below, it ripples by less than a percent.
+/// Change of the current in a control period by the dead time, over the rated current, above which it is compensated by
+/// default with a proportional current: below, that ripples by about a percent.
 const FELT_DEAD_TIME: f64 = 0.02;
 
 /// The rule of the mean of three pulsed legs.
@@ -418,6 +418,8 @@ pub(crate) struct Surroundings {
     pub adc_gain: Option<f64>,
     /// Dead time, second; 0 where none is stated.
     pub dead_time: f64,
+    /// PWM periods in a control period.
+    pub pwm_per_control: u32,
     /// Fields of motor and inverter that are stated but in error, which has been told.
     pub in_error: Vec<&'static str>,
     /// Whether legs must be low for a while in every period, for their sensors or their bootstrap.
@@ -857,22 +859,32 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
     Some(whole as u32)
 }
 
-/// Dead-time compensation, which needs a stated dead time. `pulses_three_legs`: whether three legs are pulsed in every
-/// period.
+/// Whether the dead time is compensated where that is not stated. An observed or estimated EMF corrects what it takes of
+/// the torque, and a proportional current ripples little by a short one.
+pub(crate) fn compensates_by_default(
+    drive: &Surroundings,
+    traits: Traits,
+    common: &LoopOptions,
+) -> bool {
+    let felt = || {
+        let inverter = f64::from(drive.pwm_per_control) * drive.v_bus? * drive.dead_time;
+        let moved = inverter / drive.inductance?;
+        Some(moved > FELT_DEAD_TIME * drive.rated_current.as_ref()?.0)
+    };
+    let always = common.reference == Reference::QuasiSquare || common.emf == EmfSource::Model;
+    let is_stated = traits.pulses_three_legs && drive.dead_time > 0.0;
+    is_stated && (always || felt().unwrap_or(false))
+}
+
+/// Dead-time compensation, which needs a stated dead time; none where it is not stated.
 pub(crate) fn read_dead_time_compensation(
     reader: &Reader,
     drive: &Surroundings,
-    pulses_three_legs: bool,
     errors: &mut Collector,
-) -> bool {
+) -> Option<bool> {
     const OPTION: &str = "dead_time_compensation";
-    let felt = || {
-        let moved = drive.v_bus? * drive.dead_time / drive.inductance?;
-        Some(moved > FELT_DEAD_TIME * drive.rated_current.as_ref()?.0)
-    };
-    let by_default = || pulses_three_legs && felt().unwrap_or(false);
-    let is_on = reader.switch(errors, OPTION).unwrap_or_else(by_default);
-    if is_on
+    let stated = reader.switch(errors, OPTION);
+    if stated == Some(true)
         && drive.dead_time <= 0.0
         && !drive.in_error.contains(&"dead_time")
         && let Some(field) = reader.field(OPTION)
@@ -884,5 +896,5 @@ pub(crate) fn read_dead_time_compensation(
             ["inverter", "dead_time", "500 ns"],
         ));
     }
-    is_on
+    stated
 }

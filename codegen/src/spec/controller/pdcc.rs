@@ -2,8 +2,8 @@
 
 use super::common::{
     self, CommonMode, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference,
-    Surroundings, Traits, read_common, read_common_mode, read_dead_time_compensation, refuse,
-    refuse_commutation,
+    Surroundings, Traits, compensates_by_default, read_common, read_common_mode,
+    read_dead_time_compensation, refuse, refuse_commutation,
 };
 use super::table2::{ZERO, ZeroVector, read_zero, refuse_pulse_options, refuse_turned};
 use super::{Options, TurnsOff};
@@ -81,8 +81,7 @@ impl Options for PdccSpec {
     fn read(reader: &Reader, surroundings: &Surroundings, errors: &mut Collector) -> Option<Self> {
         let modulation: Modulation = reader.choice_or_preset(errors, "modulation", &[]);
         let without_sectors = modulation == Modulation::ThreePhase;
-        let dead_time_compensation =
-            read_dead_time_compensation(reader, surroundings, without_sectors, errors);
+        let compensation = read_dead_time_compensation(reader, surroundings, errors);
         if without_sectors {
             refuse_commutation(reader, ["modulation", "three_phase"], errors);
         }
@@ -112,7 +111,8 @@ impl Options for PdccSpec {
             modulation,
             zero,
             saturation,
-            dead_time_compensation,
+            dead_time_compensation: compensation
+                .unwrap_or_else(|| compensates_by_default(surroundings, traits, &common)),
             common_mode,
             common,
         })

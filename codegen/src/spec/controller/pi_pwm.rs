@@ -2,8 +2,8 @@
 
 use super::common::{
     self, CommonMode, DEAD_TIME_COMPENSATION, LimitRule, LoopOptions, Surroundings, Traits,
-    read_common, read_common_mode, read_dead_time_compensation, refuse, refuse_commutation,
-    refuse_held,
+    compensates_by_default, read_common, read_common_mode, read_dead_time_compensation, refuse,
+    refuse_commutation, refuse_held,
 };
 use super::table2::{TABLE2, ZERO, ZeroVector, read_zero, refuse_pulse_options, refuse_turned};
 use super::{Options, TurnsOff};
@@ -186,12 +186,8 @@ impl Options for PiPwmSpec {
             modulation,
             zero,
             saturation,
-            dead_time_compensation: read_dead_time_compensation(
-                reader,
-                surroundings,
-                traits.pulses_three_legs,
-                errors,
-            ),
+            dead_time_compensation: read_dead_time_compensation(reader, surroundings, errors)
+                .unwrap_or_else(|| compensates_by_default(surroundings, traits, &common)),
             common_mode,
             common,
         })

@@ -667,3 +667,40 @@ fn trips_out_of_reach_are_no_warnings() {
         assert!(found.is_empty(), "{delta}: {found:?}");
     }
 }
+
+/// The motor's current moves by 0.218 A, 1.09 % of the rated one, in a microsecond of dead time.
+#[test]
+fn a_dead_time_that_is_felt_is_compensated_by_default() {
+    let compensates = |inverter: &str, controller: &str| {
+        let (spec, _) = checked(
+            &format!("{TIMER}adc_range = \"40 A\"\n{inverter}"),
+            controller,
+        );
+        spec.to_toml().contains("dead_time_compensation = \"on\"")
+    };
+    let [short, long] = ["dead_time = \"1.8 us\"\n", "dead_time = \"1.9 us\"\n"];
+    let twice = "dead_time = \"1 us\"\npwm_per_control = 2\n";
+    let pdcc = "kind = \"pdcc\"\n";
+    let with = |options: &str| format!("{pdcc}{options}\n");
+    for (inverter, controller, expected) in [
+        (short, pdcc, false),
+        (long, pdcc, true),
+        (twice, pdcc, true),
+        (long, "kind = \"pi-pwm\"", true),
+        ("", pdcc, false),
+        (short, &with("reference = \"quasi_square\""), true),
+        (short, &with("emf = \"model\""), true),
+        ("", &with("emf = \"model\""), false),
+        (long, &with("dead_time_compensation = \"off\""), false),
+        (short, &with("dead_time_compensation = \"on\""), true),
+        (long, &with("modulation = \"pair\""), false),
+        (long, &with("modulation = \"table2\""), false),
+        (long, "kind = \"pi-pwm\"\nsix_step = \"on\"", false),
+    ] {
+        assert_eq!(
+            compensates(inverter, controller),
+            expected,
+            "{inverter}{controller}"
+        );
+    }
+}

@@ -6,7 +6,7 @@ use crate::model::bit_true::scale::Scale;
 use crate::model::variant::reference_gain;
 use crate::{Error, Spec};
 
-/// Fraction of the largest set-point up to which the shift is proportional to the current.
+/// Fraction of the largest set-point over which the shift grows in proportion to the current.
 const SOFT_BAND: f64 = 0.1;
 
 /// Coefficient and limit; zero without compensation.

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 pub struct DeadTime {
     /// Dead time over the period.
     share: f64,
-    /// Current up to which the shift is proportional, ampere.
+    /// Current beyond the quiet one over which the shift grows in proportion, ampere.
     band: f64,
     /// Current that loses nothing over the spread of the voltages, A/V; 0 unless three legs are pulsed in every period.
     quiet: f64,
