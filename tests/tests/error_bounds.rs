@@ -123,8 +123,7 @@ fn run(program: &Program, seed: u64) -> f64 {
                 (op, Some(x)) => {
                     let words: Vec<i64> = x.iter().map(|pair| pair.0).collect();
                     let table = |table: hexagen_codegen::ir::TableId, at: i64| {
-                        let values = &program.tables[table.index()].values;
-                        i64::from(values[at as usize & (values.len() - 1)])
+                        program.tables[table.index()].entry(at)
                     };
                     op.apply_to(&words, table)
                         .map(|result| (result, ideal(program, op, &x, result)))

@@ -76,6 +76,12 @@ impl Table {
         Interval::new(0, self.values.len() as i64 - 1).contains(index)
     }
 
+    /// The entry at an index, taken modulo the length.
+    #[inline]
+    pub fn entry(&self, index: i64) -> i64 {
+        self.values[index as usize & (self.values.len() - 1)].into()
+    }
+
     /// Interval of its entries.
     pub fn interval(&self) -> Interval {
         let words = || self.values.iter().map(|&value| i64::from(value));

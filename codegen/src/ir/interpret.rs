@@ -3,8 +3,8 @@
 //! The arithmetic is [`Op::apply`]; guarded stages run only if their guard holds, as in the emitted
 //! code. A value outside its proven interval is an error: a bug of the generator.
 //!
-//! A simulation takes millions of steps, so every function is laid out before the first one: what a
-//! step needs of a node stands side by side, and constants are in their places for good.
+//! A simulation takes millions of steps, so every function is laid out before the first one: the
+//! nodes of a step lie next to each other in memory, and constants are stored once.
 
 use super::graph::{AtRest, Function, Program, Stage};
 use super::interval::Interval;
@@ -239,10 +239,7 @@ impl<'g> Routine<'g> {
         if let Some(wrong) = &self.wrong {
             return Err(wrong.clone());
         }
-        let entry = |table: TableId, at: i64| {
-            let values = &program.tables[table.index()].values;
-            i64::from(values[(at as usize) & (values.len() - 1)])
-        };
+        let entry = |table: TableId, at: i64| program.tables[table.index()].entry(at);
         let values = &mut self.values;
         let passages = self.passages.iter_mut();
         for passage in passages.take_while(|passage| passage.first < end) {

@@ -211,19 +211,16 @@ fn value_named(function: &Function, name: &str) -> Value {
 fn results(function: &Function, inputs: &[i64]) -> Vec<i64> {
     let mut results: Vec<i64> = vec![];
     for node in &function.nodes {
-        let operands: Vec<i64> = node
-            .op
-            .operands()
-            .iter()
-            .map(|x| results[x.index()])
-            .collect();
         let result = match node.op {
             Op::Input(number) => inputs[number as usize],
             Op::Join { taken, otherwise } => {
                 let holds = results[value_named(function, "holds").index()] == 1;
                 results[if holds { taken } else { otherwise }.index()]
             }
-            op => op.apply_to(&operands, |_, _| 0).expect("inside its domain"),
+            op => {
+                let result = op.apply(|operand| results[operand.index()], |_, _| 0);
+                result.expect("inside its domain")
+            }
         };
         results.push(result);
     }

@@ -197,10 +197,9 @@ impl<'p> Slice<'p> {
                 bounded([raised, high], false, path)?
             }
             Op::Lookup { table, index, .. } => {
-                let values = &self.program.tables[table.index()].values;
                 let index = self.word(index, path)?.as_number();
                 let index = index.expect("an index that the path decides");
-                Linear::number(i64::from(values[index as usize & (values.len() - 1)]))
+                Linear::number(self.program.tables[table.index()].entry(index))
             }
             Op::Select {
                 condition,

@@ -361,8 +361,8 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
     "Dead-time compensation of the compare values, by the sign of the current; needs `dead_time`",
 );
 
-/// Change of the current in a control period by the dead time, over the rated current, above which it is compensated by
-/// default with a proportional current: below, that ripples by about a percent.
+/// Change of the current in a control period by the dead time, over the rated current. Above it the dead time is
+/// compensated by default with a proportional reference too; below it, the torque ripples by about a percent.
 const FELT_DEAD_TIME: f64 = 0.02;
 
 /// The rule of the mean of three pulsed legs.
@@ -859,21 +859,20 @@ fn read_timeout(reader: &Reader, drive: &Surroundings, errors: &mut Collector) -
     Some(whole as u32)
 }
 
-/// Whether the dead time is compensated where that is not stated. An observed or estimated EMF corrects what it takes of
-/// the torque, and a proportional current ripples little by a short one.
+/// The default of the dead-time compensation. Without it, an observed or estimated EMF keeps the mean torque right,
+/// and with a proportional reference a short dead time adds little ripple.
 pub(crate) fn compensates_by_default(
     drive: &Surroundings,
     traits: Traits,
     common: &LoopOptions,
 ) -> bool {
     let felt = || {
-        let inverter = f64::from(drive.pwm_per_control) * drive.v_bus? * drive.dead_time;
-        let moved = inverter / drive.inductance?;
+        let lost = f64::from(drive.pwm_per_control) * drive.v_bus? * drive.dead_time;
+        let moved = lost / drive.inductance?;
         Some(moved > FELT_DEAD_TIME * drive.rated_current.as_ref()?.0)
     };
     let always = common.reference == Reference::QuasiSquare || common.emf == EmfSource::Model;
-    let is_stated = traits.pulses_three_legs && drive.dead_time > 0.0;
-    is_stated && (always || felt().unwrap_or(false))
+    traits.pulses_three_legs && drive.dead_time > 0.0 && (always || felt().unwrap_or(false))
 }
 
 /// Dead-time compensation, which needs a stated dead time; none where it is not stated.
