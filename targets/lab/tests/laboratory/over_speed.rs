@@ -1,9 +1,7 @@
 //! The over-speed watch in closed loop: a driven shaft trips the drive soon behind the stated speed, and
 //! a motor at its rated speed does not.
 
-mod encoder;
-
-use encoder::with_encoder;
+use crate::encoder::with_encoder;
 use hexagen::Fault;
 use hexagen_lab::closed_loop::{ClosedLoop, CurrentLoop};
 use hexagen_lab::engine::{

@@ -1,9 +1,7 @@
 //! A measured bus voltage takes torque back before it trips: what brakes at a high bus, what drives at
 //! a low one, in either direction; beyond the limits the drive trips.
 
-mod bench;
-
-use bench::Bench;
+use crate::bench::Bench;
 use hexagen::Fault;
 use hexagen_lab::closed_loop::CurrentLoop;
 use hexagen_lab::engine::{MotorSource, Prepared, prepare};

@@ -1,8 +1,6 @@
 //! Limits of the bus current hold in the mean, and take nothing where they are not reached.
 
-mod bench;
-
-use bench::Bench;
+use crate::bench::Bench;
 use hexagen_lab::engine::{MotorSource, Prepared, library, prepare};
 use hexagen_lab::plant::EnergyMeter;
 use rayon::prelude::*;

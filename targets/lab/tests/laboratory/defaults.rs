@@ -1,10 +1,7 @@
 //! What a person gets who states a motor and nothing else: the demanded torque with little ripple.
 
-mod encoder;
-mod exact;
-
-use encoder::with_encoder;
-use exact::least_ripple;
+use crate::encoder::with_encoder;
+use crate::exact::least_ripple;
 use hexagen_codegen::spec::Envelope;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, prepare};
 use hexagen_lab::motors::{FreeStart, Limit, RatedPoint, SPEEDS, further, greatest_ripple};

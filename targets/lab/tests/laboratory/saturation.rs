@@ -1,9 +1,7 @@
 //! A bus that sinks until the voltage ends the current, and comes back: what the observer has learnt meanwhile is soon
 //! unlearnt.
 
-mod bench;
-
-use bench::Bench;
+use crate::bench::Bench;
 use hexagen_codegen::spec::Envelope;
 use hexagen_lab::engine::{MotorSource, Prepared, library, prepare};
 use rayon::prelude::*;

@@ -1,9 +1,7 @@
 //! The torque in fast acceleration: between Hall edges the angle follows the speed of the
 //! coming sector, not that of the last turn; of an encoder's angles the filter of the speed is fast enough.
 
-mod encoder;
-
-use encoder::with_encoder;
+use crate::encoder::with_encoder;
 use hexagen_lab::closed_loop::ClosedLoop;
 use hexagen_lab::engine::{
     Library, Model, MotorSource, Prepared, library, plant_of, prepare, run_of,

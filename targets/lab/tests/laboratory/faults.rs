@@ -1,8 +1,6 @@
 //! The study of faults: classes behave as physics and the supervisor's rules say.
 
-mod encoder;
-
-use encoder::with_encoder;
+use crate::encoder::with_encoder;
 use hexagen_lab::closed_loop::Cause;
 use hexagen_lab::engine::{Model, MotorSource, PlantOptions, Prepared, prepare};
 use hexagen_lab::faults::{FaultRow, FaultStudy, Part, Seen, classes, study};

@@ -1,8 +1,6 @@
 //! Control begins on a turning rotor: without a trip up to the speed stated by the type.
 
-mod encoder;
-
-use encoder::with_encoder;
+use crate::encoder::with_encoder;
 use hexagen_codegen::interface::PublicValue;
 use hexagen_codegen::spec::BusSource;
 use hexagen_lab::closed_loop::{ClosedLoop, Recorder, Step, Trip};

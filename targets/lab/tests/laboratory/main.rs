@@ -1,0 +1,54 @@
+//! The laboratory's own tests: plant, sensors, closed loops and what the drives of the library reach in them.
+//!
+//! One program, since the closed loop is compiled into each program anew.
+
+mod acceleration;
+mod accuracy;
+mod bench;
+mod boards;
+mod braking;
+mod bus;
+mod bus_current;
+mod c99;
+mod closed_loop_physics;
+mod defaults;
+mod disturbed;
+mod emf_shapes;
+mod encoder;
+mod envelope;
+mod exact;
+mod exchanged_wires;
+mod faults;
+mod field_weakening;
+mod hall_angles;
+mod hall_learning;
+mod halls;
+mod low_side;
+mod low_side_vectors;
+mod over_speed;
+mod pairs;
+mod past_the_limit;
+mod plant_brute_force;
+mod plant_deadbeat;
+mod plant_faults;
+mod plant_hall;
+mod plant_network;
+mod plant_sensors;
+mod plant_six_step;
+mod plant_stress;
+mod regret;
+mod replay;
+mod residual;
+mod same_words;
+mod sampled_halls;
+mod saturation;
+mod sine_emf;
+mod slew;
+mod speed_loop;
+mod speed_ramp;
+mod stable_range;
+mod start;
+mod table2;
+mod torque_learning;
+mod torque_steps;
+mod unseen;
