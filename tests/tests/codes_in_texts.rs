@@ -61,7 +61,7 @@ fn codes_named_in_texts_exist() {
         "README.md",
         "guide/boards.md",
         "frameworks/BRING-UP.md",
-        "pdcc/semantics.md",
+        "laws/semantics.md",
     ] {
         assert!(has(name), "{name} was not read");
     }

@@ -1,5 +1,5 @@
-//! Places of the Hall sensors, learnt from the times between their edges (semantics page of predictive
-//! deadbeat, "Learning of the Hall sensors").
+//! Places of the Hall sensors, learnt from the times between their edges (shared semantics page,
+//! "Learning of the Hall sensors").
 //!
 //! While the rotor turns steadily, the part of a turn's time that a sector takes is its width. A sector that
 //! is wider than believed tells that the edge at its end stands farther on: the edge is moved by a quarter of

@@ -1,5 +1,5 @@
 //! Over-speed watch: counts the Hall edges in a row at which the last turn was too short, or the periods in a
-//! row whose angle per period is too large (semantics page of predictive deadbeat, "Over-speed").
+//! row whose angle per period is too large (shared semantics page, "Over-speed").
 
 use super::Lowering;
 use crate::diagnostics::rpm;

@@ -1,5 +1,5 @@
 //! The torque constant, learnt while hardly any current flows ("Learning of the torque constant" on the
-//! semantics page of predictive deadbeat).
+//! shared semantics page).
 //!
 //! Under load the error of the modelled EMF along the shape mixes the EMF constant with resistance and dead
 //! time. With no current, and the bus measured, it is the constant's alone.

@@ -1,5 +1,5 @@
-//! The laws: one folder each with semantics, design and expressions, around the step that all
-//! share.
+//! The laws: one folder each with semantics, design and expressions, around the step that all share:
+//! `semantics.md` here and the folder `current_loop`.
 //!
 //! A new controller adds a folder here and its options to `spec::controller`; [`Law`] is its
 //! interface to the rest of the generator.

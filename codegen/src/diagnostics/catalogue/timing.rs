@@ -316,16 +316,16 @@ pub fn stall_timeout(timeout: &Part, acceleration: f64, reversal: f64) -> Diagno
     )
 }
 
-/// The dead time exceeds a tenth of the control period.
-pub fn dead_time(dead_time: &Part, t_s: f64) -> Diagnostic {
+/// The dead time exceeds a tenth of the PWM period.
+pub fn dead_time(dead_time: &Part, period: f64) -> Diagnostic {
     Diagnostic::new(
         Code::DeadTime,
         &dead_time.location,
         format!(
-            "`dead_time`: {} exceeds a tenth of the control period of {}; shorten it to {} or lengthen the period",
+            "`dead_time`: {} exceeds a tenth of the PWM period of {}; shorten it to {} or lengthen that period",
             dead_time.given,
-            engineering(t_s, "s"),
-            engineering(at_most(t_s / 10.0), "s"),
+            engineering(period, "s"),
+            engineering(at_most(period / 10.0), "s"),
         ),
     )
 }

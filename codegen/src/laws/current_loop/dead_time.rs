@@ -1,4 +1,4 @@
-//! Dead-time compensation of the compare values (semantics page of predictive deadbeat, step 11).
+//! Dead-time compensation of the compare values (shared semantics page, step 11).
 
 use super::CurrentLoop;
 use crate::diagnostics::engineering;

@@ -1,5 +1,5 @@
 //! The deadbeat voltage: it takes the current to the reference by the end of the target period
-//! (semantics page of predictive deadbeat, step 9).
+//! (shared semantics page, step 9).
 
 use super::{CurrentLoop, Front};
 use crate::blocks::Lowering;

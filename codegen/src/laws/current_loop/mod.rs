@@ -1,5 +1,5 @@
 //! The step that all controllers share: from the sample to the deadbeat voltage, and the state for
-//! the next step (semantics page of predictive deadbeat, steps 1 to 9 and 12).
+//! the next step (shared semantics page, steps 1 to 9 and 12).
 
 mod coefficients;
 mod dead_time;

@@ -1,5 +1,5 @@
 //! Advance of an estimated EMF from the last period to the present and the target period, by the
-//! motor's shape at the speed of its own magnitude (semantics page of predictive deadbeat, step 8).
+//! motor's shape at the speed of its own magnitude (shared semantics page, step 8).
 
 use super::CurrentLoop;
 use crate::blocks::{product_bound, round_down};

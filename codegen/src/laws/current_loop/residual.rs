@@ -1,5 +1,5 @@
-//! Residual watch: counts the periods in which the currents did not follow the voltages (semantics
-//! page of predictive deadbeat, "Residual watch").
+//! Residual watch: counts the periods in which the currents did not follow the voltages (shared
+//! semantics page, "Residual watch").
 
 use crate::blocks::set_point::SetPointWords;
 use crate::blocks::{Lowering, Rotor};

@@ -4,7 +4,7 @@
 //! All signals are words in f64 (see `crate::exact`); only table indices and small enums are
 //! integers. Coefficients are rounded here, from the specification; only the format table is taken
 //! from the generator. Section numbers are those of
-//! `codegen/src/laws/pdcc/semantics.md`.
+//! `codegen/src/laws/semantics.md`.
 
 mod applied;
 mod bus_current;

@@ -1,4 +1,4 @@
-//! The state of the bit-true model, and its words in the order of `laws/pdcc/semantics.md`.
+//! The state of the bit-true model, and its words in the order of `laws/semantics.md`.
 
 use super::constants::Constants;
 use super::hall_learning::Learnt;
