@@ -178,17 +178,14 @@ pub fn faults() -> Step {
     }
 }
 
-/// Tests whose size the environment sets; in a push they are small.
-const SIZED: [&str; 9] = [
-    "c99",
-    "decisions",
-    "defaults",
+/// Programs with tests whose size the environment sets; in a push they are small.
+const SIZED: [&str; 6] = [
+    "across_crates",
     "equivalence",
     "interpreter",
+    "laboratory",
     "planted_faults",
     "proofs",
-    "regret",
-    "residual",
 ];
 
 /// Steps too long for a push.

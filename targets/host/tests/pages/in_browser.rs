@@ -2,11 +2,8 @@
 //!
 //! The checks are the same for the report of a motor and for the paper's experiment.
 
-mod browser_support;
-mod report_support;
-mod reproduction_support;
-
-use browser_support::{Open, load, open};
+use crate::browser_support::{Open, load, open};
+use crate::{report_support, reproduction_support};
 use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
     MouseMoved, MousePressed, MouseReleased,
 };

@@ -1,8 +1,6 @@
 //! The page of the paper's experiment, from short runs of the real drives.
 
-mod page_support;
-mod reproduction_support;
-
+use crate::{page_support, reproduction_support};
 use hexagen_host::render::{html, terminal, write};
 use hexagen_lab::READINGS;
 use hexagen_lab::closed_loop::FiguresOfMerit;

@@ -1,8 +1,6 @@
 //! The report's page: complete, self-contained, well nested, and the same for the same data.
 
-mod page_support;
-mod report_support;
-
+use crate::{page_support, report_support};
 use hexagen_host::render::{self, html, terminal};
 use hexagen_lab::closed_loop::{Cause, FiguresOfMerit, Held, LimitOutcome, Side, SpeedLimit, Trip};
 use hexagen_lab::report::{results_blocks, results_page, variants_table};

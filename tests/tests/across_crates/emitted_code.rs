@@ -185,13 +185,13 @@ fn every_type_leads_to_what_its_supervisor_cannot_see() {
         "(c) a thermal limit",
         "a limit of the bus voltage",
     ];
-    let readme = include_str!("../../README.md");
+    let readme = include_str!("../../../README.md");
     let (_, section) = readme
         .split_once("### What the supervisor cannot see\n")
         .expect("a section");
     let section = section.split("\n#").next().expect("its end");
-    let supervisor = include_str!("../../runtime/src/supervisor.rs");
-    let header = include_str!("../../runtime/c/hexagen.h");
+    let supervisor = include_str!("../../../runtime/src/supervisor.rs");
+    let header = include_str!("../../../runtime/c/hexagen.h");
     for text in [section, supervisor, header].map(words_of) {
         for words in said {
             assert!(text.contains(words), "{words}\n{text}");
@@ -217,7 +217,7 @@ fn every_type_leads_to_what_its_supervisor_cannot_see() {
 /// The README's code is emitted, item by item.
 #[test]
 fn readme_shows_emitted_code() {
-    let readme = include_str!("../../README.md");
+    let readme = include_str!("../../../README.md");
     let excerpt = readme.split("```rs\n").nth(1).expect("an excerpt");
     let excerpt = excerpt.split("```").next().expect("its end");
     let paper = motor(PAPER_MOTOR);
@@ -237,7 +237,7 @@ fn readme_shows_emitted_code() {
 /// What a reader looks for first stands on the README's first screens, in that order.
 #[test]
 fn readme_begins_with_what_a_reader_needs_first() {
-    let readme = include_str!("../../README.md");
+    let readme = include_str!("../../../README.md");
     let line_of = |text: &str| {
         let found = readme.lines().position(|line| line.starts_with(text));
         found.unwrap_or_else(|| panic!("no line begins with {text}")) + 1
@@ -266,12 +266,12 @@ fn readme_begins_with_what_a_reader_needs_first() {
 /// The README's interrupt is that of a program, function by function.
 #[test]
 fn readme_shows_the_interrupt_of_a_board() {
-    let readme = include_str!("../../README.md");
+    let readme = include_str!("../../../README.md");
     let shown = readme.split("```rust,ignore\n").nth(1);
     let shown = shown.and_then(|rest| rest.split("```").next());
     let program = [
-        include_str!("../../targets/frameworks/b-g431b-esc1/src/main.rs"),
-        include_str!("../../targets/frameworks/b-g431b-esc1/src/board.rs"),
+        include_str!("../../../targets/frameworks/b-g431b-esc1/src/main.rs"),
+        include_str!("../../../targets/frameworks/b-g431b-esc1/src/board.rs"),
     ]
     .concat();
     let functions: Vec<&str> = shown.expect("is there").split("\n\n").collect();
