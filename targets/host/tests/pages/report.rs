@@ -101,7 +101,7 @@ fn page_is_complete_in_itself_and_well_formed() {
 }
 
 /// Three of the seven plotted variants of a library motor are on this page: the largest page of a
-/// motor is 1.85 times its size, which `page_in_browser` measures each night.
+/// motor is 1.85 times its size, which `in_browser` measures each night.
 #[test]
 fn the_page_stays_small() {
     let most = 440_000;
