@@ -3,7 +3,7 @@
 //! Bins of 2.5 us (a whole number per period) hold exact means, integrated on the solution.
 
 use super::{Recorder, RunOptions, Step};
-use crate::plant::{Observer, Segment, Series, TERMS, Terminal, clarke, integral, sector_of};
+use crate::plant::{Observer, Segment, Terminal, clarke, integral, sector_of};
 use hexagen::Command;
 use hexagen_reference::AnyCommand;
 use serde::Serialize;
@@ -290,11 +290,9 @@ impl Observer for Trace {
                 self.bus_charge += integral(&current[..terms], segment.duration);
             }
         }
-        let mut torque: Series = [0.0; TERMS];
-        segment.torque(&mut torque);
         let integrals = |t: f64| {
             [
-                integral(&torque[..terms], t),
+                integral(&segment.torque[..terms], t),
                 integral(&segment.current[0][..terms], t),
                 integral(&segment.current[1][..terms], t),
             ]

@@ -1,6 +1,6 @@
 //! The EMF's shape as a Taylor series in time, and the times of its corners.
 
-use super::segment::{Series, TERMS};
+use super::segment::{PER_ORDER, Series, TERMS};
 use super::{EmfShape, floor, wrap};
 use std::f64::consts::{PI, TAU};
 
@@ -9,35 +9,69 @@ use std::f64::consts::{PI, TAU};
 const AHEAD: f64 = 1e-9;
 
 /// Electrical angle by which phases a, b, c lag phase a.
-pub(super) const LAG: [f64; 3] = [0.0, TAU / 3.0, 2.0 * TAU / 3.0];
+const LAG: [f64; 3] = [0.0, TAU / 3.0, 2.0 * TAU / 3.0];
+
+/// Cosine and sine of those angles.
+const TURNS: [[f64; 2]; 3] = [[1.0, 0.0], [-0.5, HALF_ROOT], [-0.5, -HALF_ROOT]];
+
+/// sqrt(3)/2.
+const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
+
+/// A wave of the shape: its order, and the factors of sine and cosine.
+type Wave = (usize, [f64; 2]);
+
+/// Shape values (-1 to 1) of the phases whose windings lie at places 0, 1, 2 of phases a, b, c.
+pub(super) fn values(shape: EmfShape, theta_e: f64, windings: [usize; 3]) -> [f64; 3] {
+    if let EmfShape::Trapezoidal { flat_top_deg } = shape {
+        return windings.map(|winding| trapezoid(flat_top_deg, theta_e - LAG[winding]));
+    }
+    let mut sums = [0.0; 3];
+    for (order, factors) in waves(&shape) {
+        let at = (order as f64 * theta_e).sin_cos();
+        for (sum, winding) in sums.iter_mut().zip(windings) {
+            *sum += wave(factors, at, order * winding)[0];
+        }
+    }
+    sums
+}
+
+/// The waves of a smooth shape.
+fn waves(shape: &EmfShape) -> impl Iterator<Item = Wave> {
+    let (sines, cosines): (&[f64], &[f64]) = match shape {
+        EmfShape::Harmonics { sines, cosines } => (sines, cosines),
+        EmfShape::Sinusoidal => (&[1.0], &[0.0]),
+        EmfShape::Trapezoidal { .. } => (&[], &[]),
+    };
+    let factors = sines.iter().zip(cosines).enumerate();
+    factors
+        .map(|(place, (&s, &c))| (2 * place + 1, [s, c]))
+        .filter(|(_, factors)| *factors != [0.0; 2])
+}
+
+/// Value and slope of s sin + c cos at an angle of the given sine and cosine, less `thirds` thirds of a turn.
+fn wave([s, c]: [f64; 2], (sin, cos): (f64, f64), thirds: usize) -> [f64; 2] {
+    let [turn_cos, turn_sin] = TURNS[thirds % 3];
+    let (sin, cos) = (
+        sin * turn_cos - cos * turn_sin,
+        cos * turn_cos + sin * turn_sin,
+    );
+    [s * sin + c * cos, s * cos - c * sin]
+}
 
 /// Half the width of a trapezoid's ramp in radians.
 fn half_ramp(flat_top_deg: f64) -> f64 {
     (180.0 - flat_top_deg).to_radians() / 2.0
 }
 
-/// Shape value (-1 to 1) at an electrical angle of the phase itself.
-pub(super) fn value(shape: EmfShape, angle: f64) -> f64 {
-    match shape {
-        EmfShape::Sinusoidal => angle.sin(),
-        EmfShape::Trapezoidal { flat_top_deg } => {
-            let from_zero = wrap(angle + PI / 2.0) - PI / 2.0;
-            let folded = if from_zero > PI / 2.0 {
-                PI - from_zero
-            } else {
-                from_zero
-            };
-            (folded / half_ramp(flat_top_deg)).clamp(-1.0, 1.0)
-        }
-        EmfShape::Harmonics { sines, cosines } => {
-            let mut sum = 0.0;
-            for (place, (s, c)) in sines.into_iter().zip(cosines).enumerate() {
-                let (sin, cos) = ((2 * place + 1) as f64 * angle).sin_cos();
-                sum += s * sin + c * cos;
-            }
-            sum
-        }
-    }
+/// Value of a trapezoid (-1 to 1) at an electrical angle of the phase itself.
+fn trapezoid(flat_top_deg: f64, angle: f64) -> f64 {
+    let from_zero = wrap(angle + PI / 2.0) - PI / 2.0;
+    let folded = if from_zero > PI / 2.0 {
+        PI - from_zero
+    } else {
+        from_zero
+    };
+    (folded / half_ramp(flat_top_deg)).clamp(-1.0, 1.0)
 }
 
 /// Electrical angle from `theta_e` to the next corner of any phase in the direction of
@@ -63,79 +97,68 @@ pub(super) fn angle_to_corner(shape: EmfShape, theta_e: f64, omega_e: f64) -> f6
     }
 }
 
-/// Taylor coefficients in time of one phase's shape times `k`, valid up to the next corner, with
-/// `phase_angle` the angle of the phase itself. Returns the number of coefficients that may be
+/// Taylor coefficients in time of the phases' shapes times `k`, valid up to the next corner, of phases whose
+/// windings lie at places 0, 1, 2 of phases a, b, c. Returns the number of coefficients that may be
 /// non-zero, at most `terms`.
 pub(super) fn series(
     shape: EmfShape,
-    k: f64,
-    phase_angle: f64,
-    omega_e: f64,
+    k: [f64; 3],
+    windings: [usize; 3],
+    [theta_e, omega_e]: [f64; 2],
     terms: usize,
-    out: &mut Series,
+    out: &mut [Series; 3],
 ) -> usize {
     debug_assert!(terms <= TERMS);
-    match shape {
-        EmfShape::Sinusoidal => {
-            out[..terms].fill(0.0);
-            add_wave([k, 0.0], phase_angle, omega_e, &mut out[..terms]);
-            terms
+    for series in out.iter_mut() {
+        series[..terms].fill(0.0);
+    }
+    if let EmfShape::Trapezoidal { flat_top_deg } = shape {
+        for ((series, k), winding) in out.iter_mut().zip(k).zip(windings) {
+            let [level, slope] = trapezoid_ahead(flat_top_deg, theta_e - LAG[winding], omega_e);
+            (series[0], series[1]) = (k * level, k * slope * omega_e);
         }
-        EmfShape::Harmonics { sines, cosines } => {
-            out[..terms].fill(0.0);
-            for (place, (s, c)) in sines.into_iter().zip(cosines).enumerate() {
-                let order = (2 * place + 1) as f64;
-                let wave = [k * s, k * c];
-                add_wave(
-                    wave,
-                    order * phase_angle,
-                    order * omega_e,
-                    &mut out[..terms],
-                );
+        return 2;
+    }
+    for (order, factors) in waves(&shape) {
+        let at = (order as f64 * theta_e).sin_cos();
+        let cycles: [[f64; 4]; 3] = std::array::from_fn(|x| {
+            let [value, slope] = wave(factors, at, order * windings[x]).map(|part| k[x] * part);
+            [value, slope, -value, -slope]
+        });
+        let mut scale = 1.0;
+        for n in 0..terms {
+            for (series, cycle) in out.iter_mut().zip(&cycles) {
+                series[n] += scale * cycle[n % 4];
             }
-            terms
-        }
-        EmfShape::Trapezoidal { flat_top_deg } => {
-            let half = half_ramp(flat_top_deg);
-            let ahead = AHEAD.copysign(omega_e);
-            let from_zero = wrap(phase_angle + ahead + PI / 2.0) - PI / 2.0;
-            let (level, slope) = if from_zero < -half {
-                (-1.0, 0.0)
-            } else if from_zero < half {
-                ((from_zero - ahead) / half, 1.0 / half)
-            } else if from_zero <= PI - half {
-                (1.0, 0.0)
-            } else if from_zero < PI + half {
-                ((PI - from_zero + ahead) / half, -1.0 / half)
-            } else {
-                (-1.0, 0.0)
-            };
-            out[..terms].fill(0.0);
-            out[0] = k * level;
-            out[1] = k * slope * omega_e;
-            2
+            scale *= order as f64 * omega_e * PER_ORDER[n];
         }
     }
+    terms
 }
 
-/// Adds the Taylor coefficients in time of s sin + c cos at an angle that grows by `omega`.
-fn add_wave([s, c]: [f64; 2], angle: f64, omega: f64, out: &mut [f64]) {
-    if s == 0.0 && c == 0.0 {
-        return;
-    }
-    let (sin, cos) = angle.sin_cos();
-    let (value, slope) = (s * sin + c * cos, s * cos - c * sin);
-    let cycle = [value, slope, -value, -slope];
-    let mut scale = 1.0;
-    for (n, coefficient) in out.iter_mut().enumerate() {
-        *coefficient += scale * cycle[n % 4];
-        scale *= omega / (n + 1) as f64;
+/// Level and slope (per radian) of a trapezoid just ahead of an angle of the phase itself.
+fn trapezoid_ahead(flat_top_deg: f64, phase_angle: f64, omega_e: f64) -> [f64; 2] {
+    let half = half_ramp(flat_top_deg);
+    let ahead = AHEAD.copysign(omega_e);
+    let from_zero = wrap(phase_angle + ahead + PI / 2.0) - PI / 2.0;
+    if from_zero < -half {
+        [-1.0, 0.0]
+    } else if from_zero < half {
+        [(from_zero - ahead) / half, 1.0 / half]
+    } else if from_zero <= PI - half {
+        [1.0, 0.0]
+    } else if from_zero < PI + half {
+        [(PI - from_zero + ahead) / half, -1.0 / half]
+    } else {
+        [-1.0, 0.0]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const PLACES: [usize; 3] = [0, 1, 2];
 
     const SHAPES: [EmfShape; 5] = [
         EmfShape::Harmonics {
@@ -167,9 +190,26 @@ mod tests {
             (345.0, -0.5),
         ] {
             assert!(
-                (value(shape, f64::to_radians(degrees)) - expected).abs() < 1e-12,
+                (values(shape, f64::to_radians(degrees), PLACES)[0] - expected).abs() < 1e-12,
                 "{degrees}"
             );
+        }
+    }
+
+    /// Phase x is phase a, later by a third of a turn for each place of its winding.
+    #[test]
+    fn windings_lie_a_third_of_a_turn_apart() {
+        for shape in SHAPES {
+            for step in 0..360 {
+                let theta = f64::from(step).to_radians();
+                for windings in [PLACES, [2, 0, 1], [1, 0, 2]] {
+                    let found = values(shape, theta, windings);
+                    for (value, winding) in found.into_iter().zip(windings) {
+                        let [alone, ..] = values(shape, theta - LAG[winding], PLACES);
+                        assert!((value - alone).abs() < 1e-14, "{shape:?} {step} {winding}");
+                    }
+                }
+            }
         }
     }
 
@@ -181,15 +221,16 @@ mod tests {
                     let theta = step as f64 * 0.1_f64.to_radians();
                     let ahead = 0.2 / shape.highest_order().max(1) as f64;
                     let angle = angle_to_corner(shape, theta, omega_e).min(ahead);
-                    for lag in LAG {
-                        let mut out = [0.0; TERMS];
-                        series(shape, 2.0, theta - lag, omega_e, TERMS, &mut out);
-                        let t = angle * 0.999 / omega_e.abs();
-                        let got = out.iter().rev().fold(0.0, |sum, c| sum * t + c);
-                        let want = 2.0 * value(shape, theta - lag + omega_e * t);
+                    let mut out = [[0.0; TERMS]; 3];
+                    let rotor = [theta, omega_e];
+                    series(shape, [2.0; 3], PLACES, rotor, TERMS, &mut out);
+                    let t = angle * 0.999 / omega_e.abs();
+                    let values = values(shape, theta + omega_e * t, PLACES);
+                    for (series, value) in out.iter().zip(values) {
+                        let got = series.iter().rev().fold(0.0, |sum, c| sum * t + c);
                         assert!(
-                            (got - want).abs() < 1e-7,
-                            "{shape:?} {omega_e} {step}: {got} {want}"
+                            (got - 2.0 * value).abs() < 1e-7,
+                            "{shape:?} {omega_e} {step}: {got} {value}"
                         );
                     }
                 }

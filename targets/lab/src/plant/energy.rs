@@ -119,8 +119,6 @@ impl Observer for EnergyMeter {
                 }
             }
         }
-        let mut torque = [0.0; TERMS];
-        segment.torque(&mut torque);
-        self.balance.shaft += segment.omega_m * integral(&torque[..terms], h);
+        self.balance.shaft += segment.omega_m * integral(&segment.torque[..terms], h);
     }
 }

@@ -3,7 +3,7 @@
 use super::gates::{Gate, Gates};
 use super::hall::Sensors;
 use super::network::{Network, balance, set_shape};
-use super::segment::{Segment, Series, TERMS, integral};
+use super::segment::{Segment, integral};
 use super::short::{Detour, tied};
 use super::{Mechanics, PlantError, PlantParams, adc, emf, sector_of, wrap};
 use hexagen::Sample;
@@ -324,7 +324,6 @@ impl Plant {
         observer: &mut dyn Observer,
     ) {
         let t_s = self.params.t_s;
-        let mut torque: Series = [0.0; TERMS];
         let mut segments = 0;
         while t < end {
             let until = self.gates.advance_to(t).min(end);
@@ -339,10 +338,10 @@ impl Plant {
                 self.segment.duration = self.segment.duration.max(planned.min(1e-3 * t_s));
             }
             let h = self.segment.duration;
+            self.segment.fill_torque();
             observer.segment(&self.segment);
 
-            self.segment.torque(&mut torque);
-            let impulse = integral(&torque[..self.segment.terms], h);
+            let impulse = integral(&self.segment.torque[..self.segment.terms], h);
             integrals.add(impulse, self.segment.volt_seconds());
             self.currents = self.segment.currents_at(h);
             if let Some(leg) = zero_leg {
@@ -388,15 +387,9 @@ impl Plant {
         let mut omega_m = self.omega_m;
         if let Some(mechanics) = &params.mechanics {
             h = h.min(params.t_s / MECHANICAL_STEPS);
+            let shape = emf::values(params.shape, self.theta_e, params.wiring.windings);
             let torque: f64 = (0..3)
-                .map(|x| {
-                    params.k_phase[x]
-                        * emf::value(
-                            params.shape,
-                            self.theta_e - emf::LAG[params.wiring.windings[x]],
-                        )
-                        * self.currents[x]
-                })
+                .map(|x| params.k_phase[x] * shape[x] * self.currents[x])
                 .sum();
             omega_m = 0.5 * (omega_m + speed_after(mechanics, omega_m, torque * h, h));
         }

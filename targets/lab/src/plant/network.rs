@@ -376,14 +376,12 @@ pub(super) fn balance(currents: &mut [f64; 3], gates: [Gate; 3]) {
 
 /// Fills the EMF part of a segment: shape series of the three phases.
 pub(super) fn set_shape(params: &PlantParams, segment: &mut Segment) {
-    for x in 0..3 {
-        segment.shape_terms = emf::series(
-            params.shape,
-            params.k_phase[x],
-            segment.theta_e - emf::LAG[params.wiring.windings[x]],
-            segment.omega_e,
-            segment.terms,
-            &mut segment.shape[x],
-        );
-    }
+    segment.shape_terms = emf::series(
+        params.shape,
+        params.k_phase,
+        params.wiring.windings,
+        [segment.theta_e, segment.omega_e],
+        segment.terms,
+        &mut segment.shape,
+    );
 }

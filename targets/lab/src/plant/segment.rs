@@ -44,6 +44,8 @@ pub struct Segment {
     pub shape: [Series; 3],
     /// Number of coefficients of `shape` that may differ from zero.
     pub shape_terms: usize,
+    /// Torque (sum of e_x i_x / omega_m) in newton metres.
+    pub torque: Series,
     /// Voltage of the star point against the negative rail in volts.
     pub neutral: Series,
     /// Connections of the three terminals.
@@ -68,6 +70,7 @@ impl Default for Segment {
             current: [[0.0; TERMS]; 3],
             shape: [[0.0; TERMS]; 3],
             shape_terms: 1,
+            torque: [0.0; TERMS],
             neutral: [0.0; TERMS],
             terminal: [Terminal::Floating; 3],
             detour: Detour::None,
@@ -119,28 +122,18 @@ impl Segment {
         })
     }
 
-    /// Writes the torque's series (sum of e_x i_x / omega_m) in newton metres, `terms` long.
-    /// Formed from the shape, so that nothing divides by the speed.
-    pub fn torque(&self, out: &mut Series) {
+    /// Fills the torque's series. Formed from the shape, so that nothing divides by the speed; the currents' sum is
+    /// zero, so two of them tell all.
+    pub(super) fn fill_torque(&mut self) {
         let terms = self.terms;
-        // A trapezoid's two coefficients, the usual case, in one pass over all phases.
-        let [a, b, c] = self.current.each_ref().map(|series| &series[..terms]);
         let [f_a, f_b, f_c] = &self.shape;
-        let out = &mut out[..terms];
-        for (((sum, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
-            *sum = f_a[0] * a + f_b[0] * b + f_c[0] * c;
-        }
-        if self.shape_terms > 1 {
-            for (((sum, a), b), c) in out[1..].iter_mut().zip(a).zip(b).zip(c) {
-                *sum += f_a[1] * a + f_b[1] * b + f_c[1] * c;
-            }
-        }
-        for (shape, current) in self.shape.iter().zip(&self.current) {
-            let further = shape[..self.shape_terms.min(terms)].iter().enumerate();
-            for (j, s) in further.skip(2) {
-                for (sum, c) in out[j..terms].iter_mut().zip(current) {
-                    *sum += s * c;
-                }
+        let [a, b, _] = self.current.each_ref().map(|series| &series[..terms]);
+        let torque = &mut self.torque[..terms];
+        torque.fill(0.0);
+        for j in 0..self.shape_terms.min(terms) {
+            let (of_a, of_b) = (f_a[j] - f_c[j], f_b[j] - f_c[j]);
+            for ((sum, a), b) in torque[j..].iter_mut().zip(a).zip(b) {
+                *sum += of_a * a + of_b * b;
             }
         }
     }
@@ -156,7 +149,7 @@ pub(crate) fn integral(series: &[f64], t: f64) -> f64 {
 }
 
 /// 1/(k + 1).
-const PER_ORDER: Series = {
+pub(super) const PER_ORDER: Series = {
     let mut table = [0.0; TERMS];
     let mut k = 0;
     while k < TERMS {
