@@ -109,17 +109,15 @@ pub(super) fn series(
     out: &mut [Series; 3],
 ) -> usize {
     debug_assert!(terms <= TERMS);
-    for series in out.iter_mut() {
-        series[..terms].fill(0.0);
-    }
     if let EmfShape::Trapezoidal { flat_top_deg } = shape {
         for ((series, k), winding) in out.iter_mut().zip(k).zip(windings) {
+            series[..terms].fill(0.0);
             let [level, slope] = trapezoid_ahead(flat_top_deg, theta_e - LAG[winding], omega_e);
             (series[0], series[1]) = (k * level, k * slope * omega_e);
         }
         return 2;
     }
-    for (order, factors) in waves(&shape) {
+    for (place, (order, factors)) in waves(&shape).enumerate() {
         let at = (order as f64 * theta_e).sin_cos();
         let cycles: [[f64; 4]; 3] = std::array::from_fn(|x| {
             let [value, slope] = wave(factors, at, order * windings[x]).map(|part| k[x] * part);
@@ -128,7 +126,8 @@ pub(super) fn series(
         let mut scale = 1.0;
         for n in 0..terms {
             for (series, cycle) in out.iter_mut().zip(&cycles) {
-                series[n] += scale * cycle[n % 4];
+                let before = if place == 0 { 0.0 } else { series[n] };
+                series[n] = before + scale * cycle[n % 4];
             }
             scale *= order as f64 * omega_e * PER_ORDER[n];
         }

@@ -359,10 +359,8 @@ impl Plant {
         let gates = self.network.reached(self.gates.state());
         let short = self.params.wiring.short;
         self.segment.detour = Detour::of(short, gates, self.params.v_bus);
-        let emf = self
-            .segment
-            .shape
-            .map(|series| self.segment.omega_m * series[0]);
+        let shape = self.segment.shape.each_ref();
+        let emf = shape.map(|series| self.segment.omega_m * series[0]);
         tied(short, gates, self.currents, emf)
     }
 

@@ -32,8 +32,8 @@ pub(super) struct Network {
     rate: f64,
     /// R/L, where all phases have the same R and the same L.
     common_rate: Option<f64>,
-    /// Largest exponent x with x^(k+1)/(k+1)! at most 1e-17, by k: where a series may end.
-    reach: [f64; TERMS - 4],
+    /// Largest exponent x with x^(k+1)/(k+1)! at most 1e-16, by k: where a series may end.
+    reach: [f64; TERMS - 2],
     /// 1/k, as the series' recursion needs it.
     reciprocal: Series,
 }
@@ -56,7 +56,7 @@ impl Network {
                 .then(|| params.resistance[0] / params.inductance[0]),
             reach: std::array::from_fn(|k| {
                 let factorial: f64 = (1..=k + 1).map(|n| n as f64).product();
-                (1e-17 * factorial).powf(1.0 / (k + 1) as f64)
+                (1e-16 * factorial).powf(1.0 / (k + 1) as f64)
             }),
             reciprocal: std::array::from_fn(|k| if k == 0 { 0.0 } else { 1.0 / k as f64 }),
         }
@@ -68,11 +68,11 @@ impl Network {
         MAX_EXPONENT / self.rate.max(omega.abs())
     }
 
-    /// Number of coefficients that a step of `h` needs: two more than those above 1e-17.
+    /// Number of coefficients that a step of `h` needs: one more than those above 1e-16.
     pub(super) fn terms(&self, omega: f64, h: f64) -> usize {
         let x = self.rate.max(omega.abs()) * h;
         let enough = self.reach.iter().position(|&reach| x <= reach);
-        enough.unwrap_or(TERMS - 4) + 4
+        enough.unwrap_or(TERMS - 2) + 2
     }
 
     /// What the gates connect to the windings: nothing where the wire is open.
@@ -261,13 +261,11 @@ impl Network {
             return;
         }
         let scale = 1.0 / weight;
-        // Beyond the EMF's terms, currents of equal phases decay independently: their voltages
-        // across R sum to zero, so the star point is constant.
-        let general = match self.common_rate {
-            Some(_) => segment.terms.min(segment.shape_terms.max(1)),
-            None => segment.terms,
-        };
-        for k in 0..general {
+        if let Some(rate) = self.common_rate {
+            self.expand_equal(rate, source, conductance.map(|part| part * scale), segment);
+            return;
+        }
+        for k in 0..segment.terms {
             let mut drive = [0.0; 3];
             let mut neutral = 0.0;
             for x in 0..3 {
@@ -286,13 +284,40 @@ impl Network {
                 }
             }
         }
-        if let Some(rate) = self.common_rate {
-            segment.neutral[general..segment.terms].fill(0.0);
-            for k in general..segment.terms.max(1) - 1 {
-                let factor = -rate * self.reciprocal[k + 1];
-                for current in &mut segment.current {
-                    current[k + 1] = factor * current[k];
+    }
+
+    /// Taylor series where all phases are equal: the voltages across R sum to zero, so the star point is the
+    /// mean of the others, and each current follows its own voltage. `shares` are the legs' shares of that mean,
+    /// zero where nothing conducts, and `rate` is R/L.
+    fn expand_equal(
+        &self,
+        rate: f64,
+        mut source: [f64; 3],
+        shares: [f64; 3],
+        segment: &mut Segment,
+    ) {
+        let (terms, shape_terms) = (segment.terms, segment.shape_terms.min(segment.terms));
+        let conductance: [f64; 3] =
+            std::array::from_fn(|x| if shares[x] > 0.0 { self.conductance[x] } else { 0.0 });
+        let (neutral, currents) = (&mut segment.neutral, &mut segment.current);
+        for k in 0..shape_terms {
+            let volts: [f64; 3] =
+                std::array::from_fn(|x| source[x] - segment.omega_m * segment.shape[x][k]);
+            neutral[k] = shares[0] * volts[0] + shares[1] * volts[1] + shares[2] * volts[2];
+            source = [0.0; 3];
+            if k + 1 < terms {
+                for x in 0..3 {
+                    let driven = conductance[x] * (volts[x] - neutral[k]);
+                    currents[x][k + 1] =
+                        (driven - rate * currents[x][k]) * self.reciprocal[k + 1];
                 }
+            }
+        }
+        neutral[shape_terms..terms].fill(0.0);
+        for k in shape_terms..terms.max(1) - 1 {
+            let factor = -rate * self.reciprocal[k + 1];
+            for current in currents.iter_mut() {
+                current[k + 1] = factor * current[k];
             }
         }
     }

@@ -129,8 +129,11 @@ impl Segment {
         let [f_a, f_b, f_c] = &self.shape;
         let [a, b, _] = self.current.each_ref().map(|series| &series[..terms]);
         let torque = &mut self.torque[..terms];
-        torque.fill(0.0);
-        for j in 0..self.shape_terms.min(terms) {
+        let (of_a, of_b) = (f_a[0] - f_c[0], f_b[0] - f_c[0]);
+        for ((sum, a), b) in torque.iter_mut().zip(a).zip(b) {
+            *sum = of_a * a + of_b * b;
+        }
+        for j in 1..self.shape_terms.min(terms) {
             let (of_a, of_b) = (f_a[j] - f_c[j], f_b[j] - f_c[j]);
             for ((sum, a), b) in torque[j..].iter_mut().zip(a).zip(b) {
                 *sum += of_a * a + of_b * b;
