@@ -2,6 +2,7 @@
 //! access; each also with planted faults, which must be found.
 
 use hexagen_c99::{ABI, FILES, HEADER, SOURCE};
+use rayon::prelude::*;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::{env, fs};
@@ -61,7 +62,7 @@ fn planted(old: &str, new: &str) -> [String; 2] {
 
 /// Those planted faults that the test does not find, or reports under another word.
 fn unnoticed<'f>(test: &str, faults: &[(&'f str, &str, &'f str)]) -> Vec<(&'f str, &'f str)> {
-    let faults = faults.iter().filter(|(name, old, new)| {
+    let faults = faults.par_iter().filter(|(name, old, new)| {
         let [header, source] = planted(old, new);
         let said = said([&header, &source], test);
         said == "no difference\n" || !said.contains(name)

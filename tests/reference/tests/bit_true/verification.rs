@@ -5,6 +5,7 @@ use crate::variants::{self, Variant};
 use hexagen::{Fault, Sample};
 use hexagen_reference::verify::{Subject, VerifyError, verify_subject};
 use hexagen_reference::{AnyCommand, BitTrue, Bus, Controller, FormatTable, Spec, Stop};
+use rayon::prelude::*;
 
 /// The model as a drive, with an optional fault.
 struct Mirror {
@@ -82,13 +83,13 @@ fn run(
 
 #[test]
 fn covers_every_path() {
-    for variant in variants::all()
-        .into_iter()
-        .step_by(11)
+    let sample = variants::all().into_iter().step_by(11);
+    let sample: Vec<_> = sample
         .chain(variants::others().into_iter().step_by(5))
-    {
+        .collect();
+    sample.par_iter().for_each(|variant| {
         let report =
-            run(&variant, 40_000, None).unwrap_or_else(|error| panic!("{}: {error}", variant.name));
+            run(variant, 40_000, None).unwrap_or_else(|error| panic!("{}: {error}", variant.name));
         let at_least = |count: u64, share: f64, what: &str| {
             assert!(
                 count as f64 >= share * report.steps as f64,
@@ -97,7 +98,7 @@ fn covers_every_path() {
             );
         };
         at_least(report.running, 0.6, "in control");
-        if variants::saturates(&variant) {
+        if variants::saturates(variant) {
             // A PI controller's gain is a fraction of the deadbeat one.
             let share = if matches!(variant.spec.controller, Controller::PiPwm(_)) {
                 0.01
@@ -112,15 +113,15 @@ fn covers_every_path() {
             at_least(report.fresh_bus, 0.1, "told the bus voltage");
             at_least(report.steps - report.fresh_bus, 0.01, "no longer told it");
         }
-        if variants::commutates(&variant) {
+        if variants::commutates(variant) {
             at_least(report.commutating, 0.02, "commutating");
             at_least(report.running - report.commutating, 0.1, "not commutating");
         }
-        if variants::has_rotor(&variant) {
+        if variants::has_rotor(variant) {
             at_least(report.timed, 0.05, "with angle");
             at_least(report.backward, 0.02, "backward");
         }
-    }
+    });
 }
 
 #[test]
