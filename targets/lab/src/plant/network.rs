@@ -33,7 +33,7 @@ pub(super) struct Network {
     /// R/L, where all phases have the same R and the same L.
     common_rate: Option<f64>,
     /// Largest exponent x with x^(k+1)/(k+1)! at most 1e-16, by k: where a series may end.
-    reach: [f64; TERMS - 2],
+    reach: [f64; TERMS - 3],
     /// 1/k, as the series' recursion needs it.
     reciprocal: Series,
 }
@@ -68,11 +68,12 @@ impl Network {
         MAX_EXPONENT / self.rate.max(omega.abs())
     }
 
-    /// Number of coefficients that a step of `h` needs: one more than those above 1e-16.
+    /// Number of coefficients that a step of `h` needs: two more than those above 1e-16, since a current follows its
+    /// voltage by one order, and the slope of a trapezoid comes one order after its level.
     pub(super) fn terms(&self, omega: f64, h: f64) -> usize {
         let x = self.rate.max(omega.abs()) * h;
         let enough = self.reach.iter().position(|&reach| x <= reach);
-        enough.unwrap_or(TERMS - 2) + 2
+        enough.unwrap_or(TERMS - 3) + 3
     }
 
     /// What the gates connect to the windings: nothing where the wire is open.
@@ -297,8 +298,13 @@ impl Network {
         segment: &mut Segment,
     ) {
         let (terms, shape_terms) = (segment.terms, segment.shape_terms.min(segment.terms));
-        let conductance: [f64; 3] =
-            std::array::from_fn(|x| if shares[x] > 0.0 { self.conductance[x] } else { 0.0 });
+        let conductance: [f64; 3] = std::array::from_fn(|x| {
+            if shares[x] > 0.0 {
+                self.conductance[x]
+            } else {
+                0.0
+            }
+        });
         let (neutral, currents) = (&mut segment.neutral, &mut segment.current);
         for k in 0..shape_terms {
             let volts: [f64; 3] =
@@ -308,8 +314,7 @@ impl Network {
             if k + 1 < terms {
                 for x in 0..3 {
                     let driven = conductance[x] * (volts[x] - neutral[k]);
-                    currents[x][k + 1] =
-                        (driven - rate * currents[x][k]) * self.reciprocal[k + 1];
+                    currents[x][k + 1] = (driven - rate * currents[x][k]) * self.reciprocal[k + 1];
                 }
             }
         }
