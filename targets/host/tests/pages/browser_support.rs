@@ -114,9 +114,11 @@ pub fn load(file: &Path, width: u32, scheme: &str) -> Option<Open> {
 }
 
 impl Open {
-    /// The value of an expression in the page.
+    /// The value of an expression in the page, which has reacted to what was done before.
     pub fn ask(&self, expression: &str) -> Value {
-        let text = format!("(async () => JSON.stringify((await {expression}) ?? null))()");
+        let text = format!(
+            "(async () => {{ await settled(); return JSON.stringify((await {expression}) ?? null); }})()"
+        );
         let found = self.tab.evaluate(&text, true);
         let found = found.unwrap_or_else(|error| panic!("{expression}: {error}"));
         let text = found.value.unwrap_or_default();
@@ -174,19 +176,16 @@ impl Open {
             timestamp: None,
         };
         self.tab.call_method(event).expect("a touch screen");
-        self.ask("settled()");
     }
 
-    /// Moves the mouse to a point of the window; the page has reacted.
+    /// Moves the mouse to a point of the window.
     pub fn point_at(&self, at: [f64; 2]) {
         self.mouse(Input::DispatchMouseEventTypeOption::MouseMoved, at, 0);
-        self.ask("settled()");
     }
 
-    /// Presses a key, by its name on the web; the page has reacted.
+    /// Presses a key, by its name on the web.
     pub fn press(&self, key: &str) {
         self.tab.press_key(key).expect("a keyboard");
-        self.ask("settled()");
     }
 
     /// Expects an empty list of faults.
@@ -203,7 +202,7 @@ impl Open {
 
     /// A point of the window, as an expression gives it.
     pub fn place(&self, expression: &str) -> [f64; 2] {
-        serde_json::from_value(self.ask(expression)).expect("two numbers")
+        place_of(&self.ask(expression))
     }
 
     /// Expects nothing in the console so far.
@@ -212,4 +211,9 @@ impl Open {
         let errors = self.errors.lock().expect("no panic");
         assert!(errors.is_empty(), "{errors:#?}");
     }
+}
+
+/// A point of the window from a page's answer.
+pub fn place_of(answer: &Value) -> [f64; 2] {
+    [0, 1].map(|axis| answer[axis].as_f64().expect("a number"))
 }

@@ -2,7 +2,7 @@
 //!
 //! The checks are the same for the report of a motor and for the paper's experiment.
 
-use crate::browser_support::{Open, load, open};
+use crate::browser_support::{Open, load, open, place_of};
 use crate::{report_support, reproduction_support};
 use headless_chrome::protocol::cdp::Input::DispatchMouseEventTypeOption::{
     MouseMoved, MousePressed, MouseReleased,
@@ -18,6 +18,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
+use std::thread;
 
 /// The report of a motor.
 static REPORT: LazyLock<PathBuf> =
@@ -33,20 +34,39 @@ fn file(page: &Page, folder: &str) -> PathBuf {
     render::write(page, &dir).expect("the page is written")
 }
 
-/// Both pages at a width, as far as there is a browser.
-fn both(width: u32, scheme: &str) -> impl Iterator<Item = Open> {
-    let files = [&*REPORT, &*EXPERIMENT].into_iter();
-    files.filter_map(move |file| open(file, width, scheme))
+/// Both pages.
+fn both() -> [&'static Path; 2] {
+    [&REPORT, &EXPERIMENT]
+}
+
+/// Tests all of these at the same time: most of it, the tests wait for their browsers.
+fn at_once<T: Sync>(all: &[T], test: impl Fn(&T) + Sync) {
+    thread::scope(|scope| {
+        for one in all {
+            scope.spawn(|| test(one));
+        }
+    });
+}
+
+/// Tests both pages at a width, as far as there is a browser.
+fn on_both(width: u32, scheme: &str, test: impl Fn(&Open) + Sync) {
+    at_once(&both(), |file| {
+        if let Some(page) = open(file, width, scheme) {
+            test(&page);
+            page.assert_no_errors();
+        }
+    });
 }
 
 /// Opens a page's file at each width, on a telephone in the dark, too: nothing overlaps, and texts are legible.
 fn assert_nothing_overlaps(file: &Path) {
-    for (width, scheme) in [
+    let places = [
         (390, "dark"),
         (390, "light"),
         (768, "light"),
         (1280, "light"),
-    ] {
+    ];
+    at_once(&places, |&(width, scheme)| {
         let Some(page) = load(file, width, scheme) else {
             return;
         };
@@ -64,7 +84,7 @@ fn assert_nothing_overlaps(file: &Path) {
         page.assert_none("faintTexts()");
         assert_eq!(page.ask("isDark()"), Value::from(scheme == "dark"));
         page.assert_no_errors();
-    }
+    });
 }
 
 #[test]
@@ -100,7 +120,7 @@ fn every_motors_page_is_small_and_nothing_overlaps() {
 
 /// Clicks each link of a page's navigation.
 fn assert_links_lead_to_headings(places: &[(&Path, u32)]) {
-    for &(file, width) in places {
+    at_once(places, |&(file, width)| {
         let Some(page) = load(file, width, "light") else {
             return;
         };
@@ -114,7 +134,7 @@ fn assert_links_lead_to_headings(places: &[(&Path, u32)]) {
             page.assert_none(&format!("missedHeading({link}, {is_first})"));
         }
         page.assert_no_errors();
-    }
+    });
 }
 
 #[test]
@@ -131,45 +151,42 @@ fn links_lead_to_their_headings_at_the_other_widths() {
 #[test]
 fn the_pages_are_legible_in_both_schemes() {
     for (scheme, is_dark) in [("light", false), ("dark", true)] {
-        for page in both(1280, scheme) {
+        on_both(1280, scheme, |page| {
             page.assert_none("faintTexts()");
             page.assert_none("wrongWhenOff()");
             assert_eq!(page.ask("isDark()"), Value::from(is_dark));
-            page.assert_no_errors();
-        }
+        });
     }
 }
 
 #[test]
 fn every_plot_tells_values_and_every_name_switches() {
-    for page in both(1280, "light") {
+    on_both(1280, "light", |page| {
         let plots = page.ask("plots.length").as_u64().expect("a number") as usize;
         for plot in 0..plots {
-            let before = page.ask(&format!("told({plot})"));
             // Elsewhere than in the plot before, which moves the pointers of others with it.
             let share = 0.1 + 0.3 * (plot % 3) as f64;
-            page.point_at(page.point(plot, share, 0.5));
+            let before = page.ask(&format!("[pointOf({plot}, {share}, 0.5), told({plot})]"));
+            page.point_at(place_of(&before[0]));
             let after = page.ask(&format!("told({plot})"));
-            assert_ne!(before, after, "plot {plot}");
+            assert_ne!(before[1], after, "plot {plot}");
             let has_number = |text: &str| text.contains(char::is_numeric);
             assert!(after.as_str().is_some_and(has_number), "{after}");
         }
         page.assert_none("deadNames()");
-        page.assert_no_errors();
-    }
+    });
 }
 
 #[test]
 fn bars_tell_their_names_and_values() {
-    for page in both(1280, "light") {
+    on_both(1280, "light", |page| {
         let count = page.ask("barsOfPage().length").as_u64().expect("a number");
         assert!(count > 0, "no bars");
         for bar in 0..count {
             page.point_at(page.place(&format!("placeOfBar({bar})")));
             page.assert_none(&format!("untoldOfBar({bar})"));
         }
-        page.assert_no_errors();
-    }
+    });
 }
 
 #[test]
@@ -189,14 +206,12 @@ fn plots_of_one_axis_are_read_and_zoomed_together() {
     page.mouse(MousePressed, page.point(0, 0.25, 0.5), 1);
     page.mouse(MouseMoved, page.point(0, 0.5, 0.5), 0);
     page.mouse(MouseReleased, page.point(0, 0.5, 0.5), 1);
-    page.ask("settled()");
     let zoomed = Value::from(vec![15, 30]);
     assert_eq!(scales(), (zoomed.clone(), zoomed));
     for clicks in [1, 2] {
         page.mouse(MousePressed, page.point(0, 0.5, 0.5), clicks);
         page.mouse(MouseReleased, page.point(0, 0.5, 0.5), clicks);
     }
-    page.ask("settled()");
     assert_eq!(scales(), whole);
     // So does the keyboard.
     page.ask("plots[0].u.over.focus()");
@@ -239,7 +254,11 @@ fn two_fingers_zoom_what_is_between_them() {
 
 #[test]
 fn every_control_does_something() {
-    for (page, kinds) in both(1280, "light").zip([7, 4]) {
+    let [report, experiment] = both();
+    at_once(&[(report, 7), (experiment, 4)], |&(file, kinds)| {
+        let Some(page) = open(file, 1280, "light") else {
+            return;
+        };
         page.assert_none("untestedControls()");
         for question in [
             "deadSwitches()",
@@ -258,18 +277,17 @@ fn every_control_does_something() {
             page.ask("kindsOfControls()")
         );
         page.assert_no_errors();
-    }
+    });
 }
 
 #[test]
 fn the_keyboard_reaches_every_control() {
-    for page in both(1280, "light") {
+    on_both(1280, "light", |page| {
         page.ask("unfold(true)");
         page.assert_none("mouseOnly()");
         page.assert_none("unfocusable()");
         page.assert_none("deadKeys()");
-        page.assert_no_errors();
-    }
+    });
 }
 
 #[test]
