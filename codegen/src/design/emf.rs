@@ -19,37 +19,41 @@ impl Parabolas {
     /// 96. Corners of 120-degree trapezoids lie on segment borders, so their integral is fitted
     /// exactly.
     pub fn fit(function: impl Fn(f64) -> f64, tolerance: f64) -> Self {
-        let mut best = Self::with_segments(&function, 12);
-        for segments in [24, 48, 96] {
-            if best.error > tolerance {
-                best = Self::with_segments(&function, segments);
-            }
-        }
-        best
+        let close = |segments| Self::within(&function, segments, tolerance);
+        let found = [12, 24, 48].into_iter().find_map(close);
+        found.unwrap_or_else(|| Self::with_segments(&function, 96))
     }
 
     /// Fits with so many segments.
     pub fn with_segments(function: &impl Fn(f64) -> f64, segments: u32) -> Self {
+        let fit = Self::within(function, segments, f64::INFINITY);
+        fit.expect("no distance is too large")
+    }
+
+    /// Fits with so many segments; none once the function is farther off than `tolerance`.
+    fn within(function: &impl Fn(f64) -> f64, segments: u32, tolerance: f64) -> Option<Self> {
         const PROBES: u32 = 16;
         let width = TAU / f64::from(segments);
         let mut error = 0.0_f64;
-        let coefficients = (0..segments)
-            .map(|segment| {
-                let middle = (f64::from(segment) + 0.5) * width;
-                let [y0, y1, y2] = [-0.5, 0.0, 0.5].map(|t| function(middle + t * width));
-                let [c0, c1, c2] = [y1, y2 - y0, 2.0 * (y0 + y2) - 4.0 * y1];
-                for probe in 0..=PROBES {
-                    let t = f64::from(probe) / f64::from(PROBES) - 0.5;
-                    let fitted = c0 + t * (c1 + t * c2);
-                    error = error.max((fitted - function(middle + t * width)).abs());
-                }
-                [c0, c1, c2]
-            })
-            .collect();
-        Self {
+        let mut coefficients = Vec::with_capacity(segments as usize);
+        for segment in 0..segments {
+            let middle = (f64::from(segment) + 0.5) * width;
+            let [y0, y1, y2] = [-0.5, 0.0, 0.5].map(|t| function(middle + t * width));
+            let [c0, c1, c2] = [y1, y2 - y0, 2.0 * (y0 + y2) - 4.0 * y1];
+            for probe in 0..=PROBES {
+                let t = f64::from(probe) / f64::from(PROBES) - 0.5;
+                let fitted = c0 + t * (c1 + t * c2);
+                error = error.max((fitted - function(middle + t * width)).abs());
+            }
+            if error > tolerance {
+                return None;
+            }
+            coefficients.push([c0, c1, c2]);
+        }
+        Some(Self {
             coefficients,
             error,
-        }
+        })
     }
 
     /// Steepest slope of any parabola, per segment.

@@ -70,9 +70,13 @@ impl EmfShape {
 
     /// The part of the three unit EMFs that drives current: each less their mean.
     pub fn zero_sum(self, theta_e: f64) -> [f64; 3] {
-        let f = [0.0, 1.0, 2.0].map(|lag| self.at(theta_e - lag * TAU / 3.0));
-        let mean = (f[0] + f[1] + f[2]) / 3.0;
-        f.map(|value| value - mean)
+        let [a, b, c] = [
+            self.at(theta_e),
+            self.at(theta_e - THIRD),
+            self.at(theta_e - 2.0 * THIRD),
+        ];
+        let mean = (a + b + c) / 3.0;
+        [a - mean, b - mean, c - mean]
     }
 
     /// f_alpha^2 + f_beta^2 of the unit EMF: 2/3 of the sum of the squared zero-sum phases.
@@ -111,8 +115,12 @@ impl EmfShape {
     /// Greatest over least square of the length of the unit EMF in the plane, less 1: 0 of a sine, 1/3 of a trapezoid of
     /// 120 degrees.
     pub fn unevenness(self) -> f64 {
-        let least = self.squared_lengths().fold(f64::INFINITY, f64::min);
-        let most = self.squared_lengths().fold(0.0, f64::max);
+        let none = (f64::INFINITY, 0.0);
+        let (least, most) = self
+            .squared_lengths()
+            .fold(none, |(least, most): (f64, f64), square| {
+                (least.min(square), most.max(square))
+            });
         most / least - 1.0
     }
 
@@ -262,8 +270,8 @@ impl EmfShape {
             .map(|step| {
                 let theta_e = TAU / 6.0 * f64::from(step) / f64::from(STEPS);
                 let phases = self.zero_sum(theta_e);
-                let most = phases.into_iter().map(f64::abs).fold(0.0, f64::max);
-                most / squared(phases)
+                let [a, b, c] = phases;
+                a.abs().max(b.abs()).max(c.abs()) / squared(phases)
             })
             .fold(0.0, f64::max);
         2.0 / 3.0 * self.proportional_factor() * greatest
@@ -271,9 +279,8 @@ impl EmfShape {
 }
 
 /// f_alpha^2 + f_beta^2 of three phases without a mean.
-fn squared(phases: [f64; 3]) -> f64 {
-    let squares = phases.map(|value| value * value);
-    squares.iter().sum::<f64>() * 2.0 / 3.0
+fn squared([a, b, c]: [f64; 3]) -> f64 {
+    (a * a + b * b + c * c) * 2.0 / 3.0
 }
 
 /// Integral over the angle of the part of phase a's unit EMF that drives current, zero mean, radians.
