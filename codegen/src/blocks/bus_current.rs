@@ -1,4 +1,4 @@
-//! Limits of the bus current (semantics of predictive deadbeat, "Bus current").
+//! Limits of the bus current (shared semantics page, "Bus current").
 
 use super::fade::Allowed;
 use super::number::round_half_up;

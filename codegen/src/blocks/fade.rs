@@ -1,4 +1,4 @@
-//! Fade of the set-point with the bus voltage (semantics of predictive deadbeat, "Fades").
+//! Fade of the set-point with the bus voltage (shared semantics page, "Fades").
 
 use super::Lowering;
 use super::set_point::SetPointWords;

@@ -1,4 +1,4 @@
-//! Slew rate of the current set-point (semantics of predictive deadbeat, "Slew rate").
+//! Slew rate of the current set-point (shared semantics page, "Slew rate").
 
 use super::Lowering;
 use super::set_point::SetPointWords;

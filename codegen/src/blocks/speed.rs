@@ -1,4 +1,4 @@
-//! The PI speed regulator (semantics of predictive deadbeat, "Speed loop").
+//! The PI speed regulator (shared semantics page, "Speed loop").
 
 use super::rotor::speed_word;
 use super::set_point::{SetPointWords, SpeedWords};

@@ -1,4 +1,4 @@
-//! Ramp of the speed set-point (semantics of predictive deadbeat, "Acceleration limit").
+//! Ramp of the speed set-point (shared semantics page, "Acceleration limit").
 
 use super::rotor::{greatest_speed, speed_word};
 use super::slew::approached;

@@ -1,4 +1,4 @@
-//! The paper's modulator (semantics of predictive deadbeat, "Modulation by Table 2"): three intervals per period, three-phase
+//! The paper's modulator (shared semantics page, "Modulation by Table 2"): three intervals per period, three-phase
 //! vectors in commutation, pair vectors otherwise.
 //!
 //! Two neighbouring vectors and a zero vector make any voltage of their triangle. Of a pair vector one leg is high, one

@@ -1,4 +1,4 @@
-//! Field weakening (semantics of predictive deadbeat, "Field weakening").
+//! Field weakening (shared semantics page, "Field weakening").
 //!
 //! Where the voltage ends, the reference turns ahead of the EMF. The greatest current turned by the angle
 //! alpha, less the part along the EMF that the set-point does not ask for, is

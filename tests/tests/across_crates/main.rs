@@ -1,6 +1,6 @@
 //! What holds between the crates: arithmetic, emitted code, proofs, bounds, models and texts.
 //!
-//! One program, which is sooner compiled and linked than one for each file.
+//! One program compiles and links faster than one for each file.
 
 mod arithmetic;
 mod codes_in_texts;

@@ -6,8 +6,7 @@ use crate::scaling::Scaled;
 use crate::spec::{EmfShape, LoopOptions, Spec};
 use std::f64::consts::{FRAC_PI_6, PI};
 
-/// Coefficients of prediction, EMF estimate and deadbeat voltage (shared semantics
-/// page), SI.
+/// Coefficients of prediction, EMF estimate and deadbeat voltage (shared semantics page), SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopDesign {
     /// Discrete plant.

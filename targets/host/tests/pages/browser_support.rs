@@ -205,9 +205,10 @@ impl Open {
         place_of(&self.ask(expression))
     }
 
-    /// Expects nothing in the console so far.
+    /// Expects nothing in the console, once the page has reacted to all that was done.
     #[track_caller]
     pub fn assert_no_errors(&self) {
+        self.ask("null");
         let errors = self.errors.lock().expect("no panic");
         assert!(errors.is_empty(), "{errors:#?}");
     }

@@ -39,18 +39,20 @@ fn both() -> [&'static Path; 2] {
     [&REPORT, &EXPERIMENT]
 }
 
-/// Tests all of these at the same time: most of it, the tests wait for their browsers.
-fn at_once<T: Sync>(all: &[T], test: impl Fn(&T) + Sync) {
-    thread::scope(|scope| {
-        for one in all {
-            scope.spawn(|| test(one));
-        }
-    });
+/// Tests all of these, two at the same time: most of the time a test waits for its browser.
+fn two_by_two<T: Sync>(all: &[T], test: impl Fn(&T) + Sync) {
+    for two in all.chunks(2) {
+        thread::scope(|scope| {
+            for one in two {
+                scope.spawn(|| test(one));
+            }
+        });
+    }
 }
 
 /// Tests both pages at a width, as far as there is a browser.
 fn on_both(width: u32, scheme: &str, test: impl Fn(&Open) + Sync) {
-    at_once(&both(), |file| {
+    two_by_two(&both(), |file| {
         if let Some(page) = open(file, width, scheme) {
             test(&page);
             page.assert_no_errors();
@@ -66,7 +68,7 @@ fn assert_nothing_overlaps(file: &Path) {
         (768, "light"),
         (1280, "light"),
     ];
-    at_once(&places, |&(width, scheme)| {
+    two_by_two(&places, |&(width, scheme)| {
         let Some(page) = load(file, width, scheme) else {
             return;
         };
@@ -120,7 +122,7 @@ fn every_motors_page_is_small_and_nothing_overlaps() {
 
 /// Clicks each link of a page's navigation.
 fn assert_links_lead_to_headings(places: &[(&Path, u32)]) {
-    at_once(places, |&(file, width)| {
+    two_by_two(places, |&(file, width)| {
         let Some(page) = load(file, width, "light") else {
             return;
         };
@@ -255,7 +257,7 @@ fn two_fingers_zoom_what_is_between_them() {
 #[test]
 fn every_control_does_something() {
     let [report, experiment] = both();
-    at_once(&[(report, 7), (experiment, 4)], |&(file, kinds)| {
+    two_by_two(&[(report, 7), (experiment, 4)], |&(file, kinds)| {
         let Some(page) = open(file, 1280, "light") else {
             return;
         };

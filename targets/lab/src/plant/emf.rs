@@ -97,9 +97,9 @@ pub(super) fn angle_to_corner(shape: EmfShape, theta_e: f64, omega_e: f64) -> f6
     }
 }
 
-/// Taylor coefficients in time of the phases' shapes times `k`, valid up to the next corner, of phases whose
-/// windings lie at places 0, 1, 2 of phases a, b, c. Returns the number of coefficients that may be
-/// non-zero, at most `terms`.
+/// Taylor coefficients in time of the phases' shapes times `k`, valid up to the next corner. `windings` are the
+/// places of the phases' windings, 0 to 2 for those of a, b and c. Returns the number of coefficients that may
+/// be non-zero, at most `terms`.
 pub(super) fn series(
     shape: EmfShape,
     k: [f64; 3],
@@ -109,15 +109,17 @@ pub(super) fn series(
     out: &mut [Series; 3],
 ) -> usize {
     debug_assert!(terms <= TERMS);
+    for series in out.iter_mut() {
+        series[..terms].fill(0.0);
+    }
     if let EmfShape::Trapezoidal { flat_top_deg } = shape {
         for ((series, k), winding) in out.iter_mut().zip(k).zip(windings) {
-            series[..terms].fill(0.0);
             let [level, slope] = trapezoid_ahead(flat_top_deg, theta_e - LAG[winding], omega_e);
             (series[0], series[1]) = (k * level, k * slope * omega_e);
         }
         return 2;
     }
-    for (place, (order, factors)) in waves(&shape).enumerate() {
+    for (order, factors) in waves(&shape) {
         let at = (order as f64 * theta_e).sin_cos();
         let cycles: [[f64; 4]; 3] = std::array::from_fn(|x| {
             let [value, slope] = wave(factors, at, order * windings[x]).map(|part| k[x] * part);
@@ -126,8 +128,7 @@ pub(super) fn series(
         let mut scale = 1.0;
         for n in 0..terms {
             for (series, cycle) in out.iter_mut().zip(&cycles) {
-                let before = if place == 0 { 0.0 } else { series[n] };
-                series[n] = before + scale * cycle[n % 4];
+                series[n] += scale * cycle[n % 4];
             }
             scale *= order as f64 * omega_e * PER_ORDER[n];
         }
@@ -214,7 +215,11 @@ mod tests {
 
     #[test]
     fn series_follows_the_shape_between_corners_in_both_directions() {
-        for shape in SHAPES {
+        const K: [f64; 3] = [2.0, 3.0, 5.0];
+        for (shape, windings) in SHAPES
+            .into_iter()
+            .zip([PLACES, [1, 0, 2], [2, 0, 1]].into_iter().cycle())
+        {
             for omega_e in [800.0, -800.0] {
                 for step in 0..3600 {
                     let theta = step as f64 * 0.1_f64.to_radians();
@@ -222,13 +227,13 @@ mod tests {
                     let angle = angle_to_corner(shape, theta, omega_e).min(ahead);
                     let mut out = [[0.0; TERMS]; 3];
                     let rotor = [theta, omega_e];
-                    series(shape, [2.0; 3], PLACES, rotor, TERMS, &mut out);
+                    series(shape, K, windings, rotor, TERMS, &mut out);
                     let t = angle * 0.999 / omega_e.abs();
-                    let values = values(shape, theta + omega_e * t, PLACES);
-                    for (series, value) in out.iter().zip(values) {
+                    let values = values(shape, theta + omega_e * t, windings);
+                    for ((series, value), k) in out.iter().zip(values).zip(K) {
                         let got = series.iter().rev().fold(0.0, |sum, c| sum * t + c);
                         assert!(
-                            (got - 2.0 * value).abs() < 1e-7,
+                            (got - k * value).abs() < 1e-7,
                             "{shape:?} {omega_e} {step}: {got} {value}"
                         );
                     }

@@ -33,7 +33,7 @@ pub(super) struct Network {
     /// R/L, where all phases have the same R and the same L.
     common_rate: Option<f64>,
     /// Largest exponent x with x^(k+1)/(k+1)! at most 1e-16, by k: where a series may end.
-    reach: [f64; TERMS - 3],
+    reach: [f64; TERMS - 4],
     /// 1/k, as the series' recursion needs it.
     reciprocal: Series,
 }
@@ -68,12 +68,12 @@ impl Network {
         MAX_EXPONENT / self.rate.max(omega.abs())
     }
 
-    /// Number of coefficients that a step of `h` needs: two more than those above 1e-16, since a current follows its
-    /// voltage by one order, and the slope of a trapezoid comes one order after its level.
+    /// Number of coefficients that a step of `h` needs: three more than those above 1e-16. A current follows its
+    /// voltage by one order, and the slope of a trapezoid adds one to the order of the EMF and one to that of the torque.
     pub(super) fn terms(&self, omega: f64, h: f64) -> usize {
         let x = self.rate.max(omega.abs()) * h;
         let enough = self.reach.iter().position(|&reach| x <= reach);
-        enough.unwrap_or(TERMS - 3) + 3
+        enough.unwrap_or(TERMS - 4) + 4
     }
 
     /// What the gates connect to the windings: nothing where the wire is open.
@@ -288,8 +288,8 @@ impl Network {
     }
 
     /// Taylor series where all phases are equal: the voltages across R sum to zero, so the star point is the
-    /// mean of the others, and each current follows its own voltage. `shares` are the legs' shares of that mean,
-    /// zero where nothing conducts, and `rate` is R/L.
+    /// mean of the conducting legs' voltages less their EMFs, and each current follows its own voltage. `shares` are
+    /// the legs' shares of that mean, zero where a leg does not conduct, and `rate` is R/L.
     fn expand_equal(
         &self,
         rate: f64,

@@ -74,8 +74,9 @@ fn emf_ramp_on_a_lossless_winding_integrates_to_a_parabola() {
     let omega_m = 100.0;
     let start = -20.0_f64.to_radians();
     let mut plant = Plant::new(params, start, omega_m).unwrap();
+    let mut meter = EnergyMeter::new(&plant);
     for period in 1..=30 {
-        plant.run_period(Legs::LOW, &mut ());
+        plant.run_period(Legs::LOW, &mut meter);
         // e_a ramps through zero while e_b = -E and e_c = +E: a sees two thirds of its own EMF.
         let angle = start + 4.0 * omega_m * f64::from(period) * T_S;
         let slope = 0.0824 * omega_m * 6.0 / PI;
@@ -83,6 +84,10 @@ fn emf_ramp_on_a_lossless_winding_integrates_to_a_parabola() {
             -(2.0 / 3.0) * slope * (angle * angle - start * start) / 2.0 / (4.0 * omega_m * L);
         assert_close(plant.truth().currents[0], want, 1e-11);
     }
+    // The shaft's work is all that the magnetic field gains.
+    let account = meter.balance(&plant);
+    assert_eq!(account.copper, 0.0);
+    assert!(account.relative_error() < 1e-12, "{account:?}");
 }
 
 #[test]
