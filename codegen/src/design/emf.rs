@@ -19,19 +19,19 @@ impl Parabolas {
     /// 96. Corners of 120-degree trapezoids lie on segment borders, so their integral is fitted
     /// exactly.
     pub fn fit(function: impl Fn(f64) -> f64, tolerance: f64) -> Self {
-        let close = |segments| Self::within(&function, segments, tolerance);
-        let found = [12, 24, 48].into_iter().find_map(close);
+        let fits = [12, 24, 48].into_iter();
+        let mut fits = fits.map(|segments| Self::up_to(tolerance, &function, segments));
+        let found = fits.find(|fit| fit.error <= tolerance);
         found.unwrap_or_else(|| Self::with_segments(&function, 96))
     }
 
     /// Fits with so many segments.
     pub fn with_segments(function: &impl Fn(f64) -> f64, segments: u32) -> Self {
-        let fit = Self::within(function, segments, f64::INFINITY);
-        fit.expect("no distance is too large")
+        Self::up_to(f64::INFINITY, function, segments)
     }
 
-    /// Fits with so many segments; none once the function is farther off than `tolerance`.
-    fn within(function: &impl Fn(f64) -> f64, segments: u32, tolerance: f64) -> Option<Self> {
+    /// Fits with so many segments; ends with the first that is farther off than `tolerance`.
+    fn up_to(tolerance: f64, function: &impl Fn(f64) -> f64, segments: u32) -> Self {
         const PROBES: u32 = 16;
         let width = TAU / f64::from(segments);
         let mut error = 0.0_f64;
@@ -45,15 +45,15 @@ impl Parabolas {
                 let fitted = c0 + t * (c1 + t * c2);
                 error = error.max((fitted - function(middle + t * width)).abs());
             }
-            if error > tolerance {
-                return None;
-            }
             coefficients.push([c0, c1, c2]);
+            if error > tolerance {
+                break;
+            }
         }
-        Some(Self {
+        Self {
             coefficients,
             error,
-        })
+        }
     }
 
     /// Steepest slope of any parabola, per segment.
