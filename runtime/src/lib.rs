@@ -31,7 +31,9 @@ pub mod errata {}
 mod format;
 #[cfg(doc)]
 pub mod guide;
+mod limits;
 mod sample;
+mod sensors;
 mod set_point;
 mod shared;
 #[cfg(feature = "signals")]
@@ -63,10 +65,12 @@ pub use drive::{ControlLoop, Drive, DynLoop};
 pub use fixed;
 pub use format::{Format, Rounding};
 pub use hexagen_macros::{State, controller, verify};
+pub use limits::Limits;
 pub use sample::{Checked, Sample};
+pub use sensors::{SensedPhases, Sensor, Sensors, ThirdSensor};
 pub use set_point::SetPoint;
 #[cfg(feature = "signals")]
 pub use signals::Signals;
 pub use status::{Fault, Mode, Status};
-pub use supervisor::{Limits, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor, Unfit};
+pub use supervisor::{Supervisor, Unfit};
 pub use trip::{Places, Trip};

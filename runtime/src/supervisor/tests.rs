@@ -1,9 +1,10 @@
 //! Every count of every ADC at the ends and in the middle of the offsets, every Hall code, every
 //! order of faults, and contradictory limits.
 
-use super::{Limits, SensedPhases, Sensor, Sensors, Supervisor, ThirdSensor, Turn, Unfit};
+use super::{Supervisor, Turn, Unfit};
 use crate::arith::Word;
-use crate::{Checked, Fault, LegState, Mode, Sample};
+use crate::{Checked, Fault, LegState, Limits, Mode, Sample};
+use crate::{SensedPhases, Sensor, Sensors, ThirdSensor};
 
 /// A valid Hall code.
 const HALL: u8 = 0b101;

@@ -54,7 +54,7 @@ impl BuildError {
 }
 
 /// The runtime's sources, by a link to their folder, which a package contains as a folder.
-const RUNTIME: [(&str, &str); 20] = [
+const RUNTIME: [(&str, &str); 22] = [
     ("lib.rs", include_str!("../../../runtime/lib.rs")),
     ("angle.rs", include_str!("../../../runtime/angle.rs")),
     ("arith.rs", include_str!("../../../runtime/arith.rs")),
@@ -75,11 +75,13 @@ const RUNTIME: [(&str, &str); 20] = [
     ),
     ("drive.rs", include_str!("../../../runtime/drive.rs")),
     ("format.rs", include_str!("../../../runtime/format.rs")),
+    ("limits.rs", include_str!("../../../runtime/limits.rs")),
     (
         "no_signals.rs",
         include_str!("../../../runtime/no_signals.rs"),
     ),
     ("sample.rs", include_str!("../../../runtime/sample.rs")),
+    ("sensors.rs", include_str!("../../../runtime/sensors.rs")),
     (
         "set_point.rs",
         include_str!("../../../runtime/set_point.rs"),
