@@ -141,8 +141,8 @@ pub struct Watch {
     pub most: i32,
 }
 
-/// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits. Of
-/// two sensors that differ, sign and offset are the first one's.
+/// Limits of the supervisor; words of current are ADC counts with `current_bits` fraction bits. Where
+/// the current sensors differ, sign and offset are those of the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Largest count of the phase-current ADC.

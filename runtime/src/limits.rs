@@ -8,8 +8,8 @@ use crate::arith::Word;
 use crate::sensors::{SensedPhases, Sensor, Sensors, third_of};
 use crate::{Fault, Sample};
 
-/// Limits of a drive's samples, and its start-up times. Of two sensors that differ these are the
-/// first one's: see [`Sensors`].
+/// Limits of a drive's samples, and its start-up times. Where the current sensors differ, sign and
+/// offset here are those of the first: see [`Sensors`].
 ///
 /// Words of current are ADC counts with [`current_bits`](Self::current_bits) fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,8 +44,8 @@ pub struct Limits {
     /// Control periods of a sector at the speed up to which the short-circuited motor takes no more
     /// than the largest current; 0 if it never takes more.
     pub brake_periods: i32,
-    /// Control periods that a start waits at most for the rotor's angle: two sectors at the speed up
-    /// to which control may begin without it; 0 for none.
+    /// Longest wait of a start for the rotor's angle, control periods: two sectors at the speed up to
+    /// which control may begin without the angle; 0 for no wait.
     pub start_periods: u16,
     /// Least and greatest ADC count of the bus voltage without a fault; 0 and 65535 for none.
     pub bus_counts: [u16; 2],

@@ -45,8 +45,8 @@ pub struct Sensor {
     pub offset: u16,
     /// Least and greatest offset that calibration accepts, counts.
     pub offsets: [u16; 2],
-    /// Current of a count over that of the first sensor, with [`RATIO_BITS`](Self::RATIO_BITS)
-    /// fraction bits: 1/2 to 2.
+    /// Amperes per count over those of the first sensor, 1/2 to 2, with
+    /// [`RATIO_BITS`](Self::RATIO_BITS) fraction bits.
     pub ratio: i32,
 }
 
@@ -72,7 +72,7 @@ impl Sensor {
     }
 }
 
-/// The third of three current sensors, and what a drive makes of all three.
+/// The third current sensor, and how a drive uses all three.
 ///
 /// Sensors in the low legs show the currents of legs that are low for long enough. Of three, at least
 /// two are: the leg that is high for longest, or is off, is the one that may not be read; its current

@@ -70,11 +70,7 @@ impl EmfShape {
 
     /// The part of the three unit EMFs that drives current: each less their mean.
     pub fn zero_sum(self, theta_e: f64) -> [f64; 3] {
-        let [a, b, c] = [
-            self.at(theta_e),
-            self.at(theta_e - THIRD),
-            self.at(theta_e - 2.0 * THIRD),
-        ];
+        let [a, b, c] = phases(|theta| self.at(theta), theta_e);
         let mean = (a + b + c) / 3.0;
         [a - mean, b - mean, c - mean]
     }
@@ -285,13 +281,13 @@ fn squared([a, b, c]: [f64; 3]) -> f64 {
 
 /// Integral over the angle of the part of phase a's unit EMF that drives current, zero mean, radians.
 pub fn zero_sum_integral(shape: EmfShape, theta: f64) -> f64 {
-    let f = |shift: f64| shape.integral(theta - shift);
-    f(0.0) - (f(0.0) + f(THIRD) + f(2.0 * THIRD)) / 3.0
+    let [a, b, c] = phases(|theta| shape.integral(theta), theta);
+    a - (a + b + c) / 3.0
 }
 
 /// A function of phase a for the three phases.
 pub fn phases(of_a: impl Fn(f64) -> f64, theta: f64) -> [f64; 3] {
-    [0.0, THIRD, 2.0 * THIRD].map(|shift| of_a(theta - shift))
+    [of_a(theta), of_a(theta - THIRD), of_a(theta - 2.0 * THIRD)]
 }
 
 /// Phase-a current per ampere of set-point, parallel to the EMF and of constant torque:

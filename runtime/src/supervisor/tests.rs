@@ -3,8 +3,9 @@
 
 use super::{Supervisor, Turn, Unfit};
 use crate::arith::Word;
-use crate::{Checked, Fault, LegState, Limits, Mode, Sample};
-use crate::{SensedPhases, Sensor, Sensors, ThirdSensor};
+use crate::{
+    Checked, Fault, LegState, Limits, Mode, Sample, SensedPhases, Sensor, Sensors, ThirdSensor,
+};
 
 /// A valid Hall code.
 const HALL: u8 = 0b101;

@@ -20,7 +20,7 @@ const HALF_ROOT: f64 = 0.866_025_403_784_438_6;
 /// A wave of the shape: its order, and the factors of sine and cosine.
 type Wave = (usize, [f64; 2]);
 
-/// Shape values (-1 to 1) of the phases whose windings lie at places 0, 1, 2 of phases a, b, c.
+/// Shape values (-1 to 1) of the phases. `windings` are the places of their windings, 0 to 2 for those of a, b and c.
 pub(super) fn values(shape: EmfShape, theta_e: f64, windings: [usize; 3]) -> [f64; 3] {
     if let EmfShape::Trapezoidal { flat_top_deg } = shape {
         return windings.map(|winding| trapezoid(flat_top_deg, theta_e - LAG[winding]));

@@ -263,7 +263,7 @@ impl Network {
         }
         let scale = 1.0 / weight;
         if let Some(rate) = self.common_rate {
-            self.expand_equal(rate, source, conductance.map(|part| part * scale), segment);
+            self.expand_equal([rate, scale], conductance, source, segment);
             return;
         }
         for k in 0..segment.terms {
@@ -288,23 +288,17 @@ impl Network {
     }
 
     /// Taylor series where all phases are equal: the voltages across R sum to zero, so the star point is the
-    /// mean of the conducting legs' voltages less their EMFs, and each current follows its own voltage. `shares` are
-    /// the legs' shares of that mean, zero where a leg does not conduct, and `rate` is R/L.
+    /// mean of the conducting legs' voltages less their EMFs, and each current follows its own voltage. `rate` is R/L,
+    /// `conductance` 1/L of each leg that conducts, else 0, and `scale` one over their sum.
     fn expand_equal(
         &self,
-        rate: f64,
+        [rate, scale]: [f64; 2],
+        conductance: [f64; 3],
         mut source: [f64; 3],
-        shares: [f64; 3],
         segment: &mut Segment,
     ) {
-        let (terms, shape_terms) = (segment.terms, segment.shape_terms.min(segment.terms));
-        let conductance: [f64; 3] = std::array::from_fn(|x| {
-            if shares[x] > 0.0 {
-                self.conductance[x]
-            } else {
-                0.0
-            }
-        });
+        let (terms, shape_terms) = (segment.terms, segment.shape_terms);
+        let shares = conductance.map(|part| part * scale);
         let (neutral, currents) = (&mut segment.neutral, &mut segment.current);
         for k in 0..shape_terms {
             let volts: [f64; 3] =
@@ -319,7 +313,7 @@ impl Network {
             }
         }
         neutral[shape_terms..terms].fill(0.0);
-        for k in shape_terms..terms.max(1) - 1 {
+        for k in shape_terms..terms - 1 {
             let factor = -rate * self.reciprocal[k + 1];
             for current in currents.iter_mut() {
                 current[k + 1] = factor * current[k];

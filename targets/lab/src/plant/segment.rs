@@ -42,7 +42,7 @@ pub struct Segment {
     pub current: [Series; 3],
     /// Phase EMF per mechanical speed in V s/rad, which is also the torque per ampere.
     pub shape: [Series; 3],
-    /// Number of coefficients of `shape` that may differ from zero.
+    /// Number of coefficients of `shape` that may differ from zero, at most `terms`.
     pub shape_terms: usize,
     /// Torque (sum of e_x i_x / omega_m) in newton metres.
     pub torque: Series,
@@ -133,7 +133,7 @@ impl Segment {
         for ((sum, a), b) in torque.iter_mut().zip(a).zip(b) {
             *sum = of_a * a + of_b * b;
         }
-        for j in 1..self.shape_terms.min(terms) {
+        for j in 1..self.shape_terms {
             let (of_a, of_b) = (f_a[j] - f_c[j], f_b[j] - f_c[j]);
             for ((sum, a), b) in torque[j..].iter_mut().zip(a).zip(b) {
                 *sum += of_a * a + of_b * b;
