@@ -435,6 +435,12 @@ static inline int32_t hexagen_divide_narrow(
     return (quotient < (uint32_t)limit) ? (int32_t)quotient : limit;
 }
 
+/** x - 2^bits floor(x / 2^bits): what a shift by `bits`, 1 to 30, leaves over. */
+static inline int32_t hexagen_remainder(int32_t x, uint16_t bits)
+{
+    return (int32_t)((uint32_t)x & ((UINT32_C(1) << bits) - 1U));
+}
+
 /** floor((2^32 - 1) / ticks): angle per tick if a turn, 2^32, lasts `ticks`, at least 2. */
 static inline int32_t hexagen_turn_over(int32_t ticks)
 {

@@ -198,6 +198,13 @@ pub fn divide_narrow(numerator: Word, denominator: Word, limit: Word, shift: u32
     Word(quotient.min(limit.0 as u32) as i32)
 }
 
+/// `x - 2^bits floor(x / 2^bits)`: what a shift by `bits`, 1 to 30, leaves over.
+#[inline(always)]
+#[must_use]
+pub fn remainder(x: Word, bits: u32) -> Word {
+    Word(x.0 & 1_i32.wrapping_shl(bits).wrapping_sub(1))
+}
+
 /// `floor((2^32 - 1) / ticks)`: angle per tick if a turn, 2^32, lasts `ticks`, at least 2.
 #[inline(always)]
 #[must_use]

@@ -326,6 +326,16 @@ const LOOSE: &[Row] = &[
         ],
     ),
     (
+        "rounding",
+        &[
+            ("ignored", &[]),
+            (
+                "predicted",
+                &[("controller", "rounding_prediction", "\"on\"")],
+            ),
+        ],
+    ),
+    (
         "stall_timeout",
         &[
             ("none", &[]),

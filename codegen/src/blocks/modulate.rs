@@ -14,6 +14,34 @@ pub const LOW: i32 = 1;
 /// Leg state: both switches off.
 pub const OFF: i32 = 2;
 
+/// Three centred pulses.
+#[derive(Clone, Copy, Debug)]
+pub struct Pulsed<'b> {
+    /// The command.
+    pub command: Command<'b>,
+    /// Duty of each leg before rounding, with half a count, words of the nominal bus.
+    duty: Phases<'b, 3>,
+}
+
+impl<'b> Pulsed<'b> {
+    /// The mean phase voltages of the compare values as written: `u`, the commanded ones, less what rounding to whole
+    /// counts takes. Of the bus, the nominal one counts here.
+    pub fn written(&self, l: &Lowering<'b>, third: Coefficient, u: Phases<'b>) -> Phases<'b> {
+        l.b.stage(
+            "predict_rounding",
+            &[
+                "Voltage of the compare values as written: the prediction knows what rounding to whole timer counts changes.",
+            ],
+        );
+        named! {
+            let rest = self.duty.map(|duty| duty.remainder(l.scale.voltage_bits));
+            let rest_mean = third * rest.sum();
+            let u_written = Phases::each(|x| u.0[x] - rest.0[x] + rest_mean);
+        }
+        u_written
+    }
+}
+
 /// Compare values and leg states of phases a, b, c.
 #[derive(Clone, Copy, Debug)]
 pub struct Command<'b> {
@@ -104,42 +132,37 @@ impl<'b> Modulator<'b> {
         l: &Lowering<'b>,
         limited: &Limited<'b>,
         common_mode: CommonModeRule,
-    ) -> Command<'b> {
+    ) -> Pulsed<'b> {
         let doc = common_mode.doc();
         l.b.stage("modulate", &[doc]);
-        if !common_mode.is_centred() {
+        let duty = if common_mode.lifts(self.bus) {
+            match self.shifts {
+                None => limited.centred,
+                Some(shifts) => (limited.centred + shifts).named("duty"),
+            }
+        } else if common_mode.is_centred() {
+            Phases::each(|x| self.lifted_centred(l, limited.centred.0[x], x)).named("duty")
+        } else {
             named! {
                 let pulse = Phases::each(|x| {
                     self.shifted(nominal_share(limited.centred.0[x], self.bus), x)
                 });
-                let compare_pulsed = common_mode.lifted(l, pulse).map(|lifted| counts(l, lifted, common_mode.top));
             }
-            return Command {
-                compares: compare_pulsed,
-                legs: Phases::each(|_| l.b.number(PULSED)),
-            };
-        }
-        let is_lifted = self.bus.ratio.is_none();
-        let readable = l.spec.inverter.readable_top();
+            common_mode.lifted(l, pulse).named("duty")
+        };
         named! {
-            let compare_pulsed = Phases::each(|x| {
-                let centred = limited.centred.0[x];
-                if is_lifted {
-                    counts(l, self.shifted(centred, x), readable)
-                } else {
-                    self.compare_centred(l, centred, x)
-                }
-            });
+            let compare_pulsed = duty.map(|duty| counts(l, duty, common_mode.top));
         }
-        Command {
+        let command = Command {
             compares: compare_pulsed,
             legs: Phases::each(|_| l.b.number(PULSED)),
-        }
+        };
+        Pulsed { command, duty }
     }
 
-    fn compare_centred(&self, l: &Lowering<'b>, centred: Expr<'b>, x: usize) -> Expr<'b> {
-        let scaled = self.shifted(nominal_share(centred, self.bus), x);
-        counts(l, scaled + half_period(l), l.spec.inverter.readable_top())
+    /// The duty of a centred voltage before rounding, with half a count, words of the nominal bus.
+    fn lifted_centred(&self, l: &Lowering<'b>, centred: Expr<'b>, x: usize) -> Expr<'b> {
+        self.shifted(nominal_share(centred, self.bus), x) + half_period(l)
     }
 
     fn shifted(&self, volts: Expr<'b>, x: usize) -> Expr<'b> {
@@ -194,7 +217,8 @@ impl<'b> Modulator<'b> {
         named! {
             let half_bus = bus >> 1;
             let compare_three = Phases::each(|x| {
-                self.compare_centred(l, limited.centred.0[x], x)
+                let duty = self.lifted_centred(l, limited.centred.0[x], x);
+                counts(l, duty, l.spec.inverter.readable_top())
             });
             let terminal_three = limited.centred.map(|centred| (centred + half_bus).clamp(0, bus));
             let pairing = !commutating;

@@ -104,6 +104,8 @@ pub(super) enum Primitive {
     Divide,
     /// [`Op::Divide`] whose shifted numerator fits 32 unsigned bits.
     DivideNarrow,
+    /// [`Op::Remainder`]
+    Remainder,
     /// [`Op::TurnOver`]
     TurnOver,
     /// [`Op::AngleIndex`]
@@ -223,6 +225,7 @@ impl<'a> Scope<'a> {
                 let half = E::binary(O::Add, of(a), E::Number(1 << (bits - 1)));
                 E::ShiftedRight(Box::new(half), bits)
             }
+            Op::Remainder(a, bits) => call(P::Remainder, &[a], Some(bits)),
             Op::Min(a, b) => call(P::Min, &[a, b], None),
             Op::Max(a, b) => call(P::Max, &[a, b], None),
             Op::Lesser(a, b) => call(P::Lesser, &[a, b], None),

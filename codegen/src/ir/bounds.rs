@@ -412,6 +412,8 @@ impl<'p> Bounds<'p> {
             }
             Op::ShiftRight(a, n) => shifted(of(a), n),
             Op::ShiftRound(a, n) => of(a).shifted_right(n).plus(ErrorInterval::nearest()),
+            // A number that is shifted without rounding leaves nothing over.
+            Op::Remainder(_, n) => ErrorInterval::new(0.0, f64::from(n).exp2() - 1.0),
             Op::Min(x, high) | Op::Lesser(x, high) => {
                 let error = of(x).union(of(high));
                 match self.function.node(x).op {

@@ -69,6 +69,7 @@ impl Cost {
             | Op::Abs(_)
             | Op::ShiftLeft(..)
             | Op::ShiftRight(..)
+            | Op::Remainder(..)
             | Op::FlagWord(_)
             | Op::AngleAdd(..)
             | Op::AngleSub(..) => cost.additions = 1,

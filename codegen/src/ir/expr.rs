@@ -244,6 +244,12 @@ impl<'b> Expr<'b> {
         })
     }
 
+    /// x - 2^n floor(x / 2^n)
+    #[must_use]
+    pub fn remainder(self, n: u32) -> Self {
+        self.op(Op::Remainder(self.value, n))
+    }
+
     /// floor((2^32 - 1) / x)
     #[must_use]
     pub fn turn_over(self) -> Self {

@@ -51,6 +51,7 @@ fn intervals_of_one_operand_are_those_of_all_values() {
             check(Op::ShiftLeft(X, n), &[x]);
             check(Op::ShiftRight(X, n), &[x]);
             check(Op::ShiftRound(X, n + 1), &[x]);
+            check(Op::Remainder(X, n + 1), &[x]);
         }
     }
 }

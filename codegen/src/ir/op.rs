@@ -153,6 +153,8 @@ pub enum Op {
     ShiftRight(Value, u32),
     /// floor((a + 2^(n-1)) / 2^n), n at least 1: a part of a, rounded half up; the sum in one word
     ShiftRound(Value, u32),
+    /// a - 2^n floor(a / 2^n), n from 1 to 30: what a shift by n leaves over
+    Remainder(Value, u32),
     /// min(a, b)
     Min(Value, Value),
     /// max(a, b)
@@ -293,6 +295,7 @@ impl Op {
             | Self::ShiftLeft(a, _)
             | Self::ShiftRight(a, _)
             | Self::ShiftRound(a, _)
+            | Self::Remainder(a, _)
             | Self::TurnOver(a)
             | Self::Not(a)
             | Self::FlagWord(a)
@@ -464,6 +467,7 @@ impl Op {
             Self::ShiftLeft(a, n) => word(a) << n,
             Self::ShiftRight(a, n) => word(a) >> n,
             Self::ShiftRound(a, n) => (word(a) + (1 << (n - 1))) >> n,
+            Self::Remainder(a, n) => word(a).rem_euclid(1 << n),
             Self::Min(a, b) | Self::Lesser(a, b) => word(a).min(word(b)),
             Self::Max(a, b) | Self::Greater(a, b) => word(a).max(word(b)),
             Self::Clamp { x, low, high } => word(x).max(word(low)).min(word(high)),
@@ -580,6 +584,10 @@ impl Op {
             Self::ShiftLeft(_, n) => Interval::new(x[0].low << n, x[0].high << n),
             Self::ShiftRight(_, n) => Interval::new(x[0].low >> n, x[0].high >> n),
             Self::ShiftRound(..) => Interval::new(exact(x[0].low, 0), exact(x[0].high, 0)),
+            Self::Remainder(_, n) if x[0].low >> n == x[0].high >> n => {
+                Interval::new(exact(x[0].low, 0), exact(x[0].high, 0))
+            }
+            Self::Remainder(_, n) => Interval::new(0, (1 << n) - 1),
             Self::FlagWord(_) => x[0],
             Self::Clamp { .. } => {
                 let raised = x[0].corners(x[1], i64::max);

@@ -163,6 +163,7 @@ impl Program {
             Op::ShiftLeft(a, n) => format!("{} << {n}", of(a)),
             Op::ShiftRight(a, n) => format!("{} >> {n}", of(a)),
             Op::ShiftRound(a, n) => format!("round({} >> {n})", of(a)),
+            Op::Remainder(a, n) => format!("remainder({}, {n})", of(a)),
             Op::Min(a, b) | Op::Lesser(a, b) => format!("min({}, {})", of(a), of(b)),
             Op::Max(a, b) | Op::Greater(a, b) => format!("max({}, {})", of(a), of(b)),
             Op::Clamp { x, low, high } => format!("clamp({}, {}, {})", of(x), of(low), of(high)),

@@ -539,6 +539,7 @@ fn in_domain(op: &Op, x: &[Interval]) -> bool {
         Op::MulRound { shift, .. } => (1..=62).contains(&shift),
         Op::MulFloor { shift, .. } | Op::MulAddFloor { shift, .. } => shift <= 62,
         Op::ShiftLeft(_, n) | Op::ShiftRight(_, n) => n <= 31,
+        Op::Remainder(_, n) => (1..=30).contains(&n),
         Op::Divide { shift, .. } | Op::DivideNarrow { shift, .. } => shift <= 31 && x[2].low >= 0,
         Op::AngleIndex { segments, .. } | Op::AngleFraction { segments, .. } => {
             (1..=1 << 16).contains(&segments)

@@ -298,6 +298,7 @@ mod tests {
                 zero: ZeroVector::AllLow,
                 saturation: LimitRule::TorquePriority,
                 dead_time_compensation: false,
+                rounding_prediction: false,
                 common_mode: CommonMode::Centred,
                 common: LoopOptions {
                     emf: EmfSource::Estimated,

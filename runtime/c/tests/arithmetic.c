@@ -130,6 +130,8 @@ int main(void)
         if (both < power(63) && both >= -power(63) && fits(over(both, power(shift)))) {
             EXPECT(mul_add_floor(x, y, z, w, shift), over(both, power(shift)));
         }
+        shift = (uint16_t)(1U + bits() % 30U);
+        EXPECT(remainder(x, shift), x - over(x, power(shift)) * power(shift));
         {
             /* Any limit, or one next to a magnitude. */
             const int32_t near = (int32_t)(bits() % 3U) - 1;

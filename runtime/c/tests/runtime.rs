@@ -128,6 +128,7 @@ fn primitives_match_their_comments() {
             "INT64_C(1) << (shift - 1)",
             "(INT64_C(1) << (shift - 1)) - 1",
         ),
+        ("remainder(", "<< bits) - 1U", "<< bits) - 2U"),
         (
             "turn_over(",
             "UINT32_C(0xffffffff) /",

@@ -401,6 +401,7 @@ fn wrong_operators(op: Op) -> Vec<(&'static str, Op)> {
             ("rounded down", Op::ShiftRight(a, n)),
             ("shift one more", Op::ShiftRound(a, n + 1)),
         ],
+        Op::Remainder(a, n) => vec![("one bit more", Op::Remainder(a, n + 1))],
         Op::Min(a, b) | Op::Lesser(a, b) => {
             vec![("max for min", Op::Max(a, b)), ("limit left out", same(a))]
         }

@@ -229,6 +229,7 @@ impl<'p> Slice<'p> {
             | Op::State(_)
             | Op::MulLimited { .. }
             | Op::ShiftRound(..)
+            | Op::Remainder(..)
             | Op::Divide { .. }
             | Op::DivideNarrow { .. }
             | Op::TurnOver(_)

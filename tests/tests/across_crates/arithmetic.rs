@@ -8,7 +8,7 @@
 use hexagen::arith::{
     Word, angle_fraction, angle_index, angle_index_by_halves, divide, divide_by_digits,
     divide_narrow, lookup, mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow,
-    mul_round_without_carry, product_by_halves, select, turn_over,
+    mul_round_without_carry, product_by_halves, remainder, select, turn_over,
 };
 use hexagen_codegen::ir::{
     Expr, Interval, Lut, Machine, Named, Output, ProgramBuilder, mul_add_floor as sum_of_products,
@@ -177,6 +177,12 @@ proptest! {
         let n = (d - 1 - less).max(0);
         let exact = ((i64::from(n) << shift) / i64::from(d)) as i32;
         prop_assert_eq!(divide_by_digits(Word(n), Word(d), Word(i32::MAX), shift).0, exact);
+    }
+
+    #[test]
+    fn remainders(x in any::<i32>(), bits in 1_u32..=30) {
+        let expected = interpreted(&[Interval::WORD], &[x], &[0], |x, _| x[0].remainder(bits));
+        prop_assert_eq!(remainder(Word(x), bits).0, expected);
     }
 
     #[test]

@@ -75,6 +75,7 @@ fn ideal(program: &Program, op: Op, x: &[Pair], result: i64) -> f64 {
         Op::MulLimited { .. } => (x[0].1 * x[1].1).min(x[2].1),
         Op::ShiftLeft(_, n) => x[0].1 / scale(n),
         Op::ShiftRight(_, n) | Op::ShiftRound(_, n) => x[0].1 * scale(n),
+        Op::Remainder(..) => 0.0,
         Op::Min(..) | Op::Lesser(..) => x[0].1.min(x[1].1),
         Op::Max(..) | Op::Greater(..) => x[0].1.max(x[1].1),
         Op::Clamp { .. } => x[0].1.max(x[1].1).min(x[2].1),

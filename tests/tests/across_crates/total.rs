@@ -4,7 +4,7 @@
 use hexagen::arith::{
     Word, angle_fraction, angle_index, angle_index_by_halves, divide, divide_by_digits,
     divide_narrow, lookup, mul_add_floor, mul_floor, mul_limited, mul_round, mul_round_narrow,
-    mul_round_without_carry, product_by_halves, row, select, turn_over,
+    mul_round_without_carry, product_by_halves, remainder, row, select, turn_over,
 };
 use hexagen::fixed::types::{I8F24, I16F16};
 use hexagen::{
@@ -273,6 +273,7 @@ proptest! {
             divide(a, b, c, bits),
             divide_by_digits(a, b, c, bits),
             divide_narrow(a, b, c, bits),
+            remainder(a, bits),
             turn_over(a),
             angle_index(a, bits),
             angle_index_by_halves(a, bits),

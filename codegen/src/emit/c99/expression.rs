@@ -285,6 +285,7 @@ fn called(primitive: Primitive) -> &'static str {
         Primitive::MulLimited => "hexagen_mul_limited",
         Primitive::Divide => "hexagen_divide",
         Primitive::DivideNarrow => "hexagen_divide_narrow",
+        Primitive::Remainder => "hexagen_remainder",
         Primitive::TurnOver => "hexagen_turn_over",
         Primitive::AngleIndex => "hexagen_angle_index",
         Primitive::AngleFraction => "hexagen_angle_fraction",

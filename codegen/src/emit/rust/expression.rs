@@ -278,6 +278,7 @@ fn call(
         Primitive::MulLimited => quote!(mul_limited),
         Primitive::Divide => quote!(divide),
         Primitive::DivideNarrow => quote!(divide_narrow),
+        Primitive::Remainder => quote!(remainder),
         Primitive::TurnOver => quote!(turn_over),
         Primitive::AngleIndex => quote!(angle_index),
         Primitive::AngleFraction => quote!(angle_fraction),

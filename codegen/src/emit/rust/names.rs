@@ -7,7 +7,7 @@ use crate::ir::Word;
 use std::collections::HashSet;
 
 /// Functions of `hexagen::arith` that emitted code may import.
-pub(super) const HELPERS: [&str; 13] = [
+pub(super) const HELPERS: [&str; 14] = [
     "angle_fraction",
     "angle_index",
     "divide",
@@ -18,6 +18,7 @@ pub(super) const HELPERS: [&str; 13] = [
     "mul_limited",
     "mul_round",
     "mul_round_narrow",
+    "remainder",
     "row",
     "select",
     "turn_over",

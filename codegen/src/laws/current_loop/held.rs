@@ -69,7 +69,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     /// Greatest magnitudes of the words `due` and `later`.
     fn folded_bounds(&self, folded: &Folded) -> [i64; 2] {
         let l = self.l;
-        let volts = l.bus_interval().high;
+        let volts = self.volts_bound();
         let past = l.rounded_product(folded.past, l.current_span()).abs() + 1;
         match folded.fade {
             None if self.options.delay == 1 => [past + 2 * volts, volts],

@@ -21,6 +21,8 @@ pub struct Needs {
     pub emf: EmfUse,
     /// Greatest magnitude of the law's own contribution to the folded words, words of voltage.
     pub memory: i64,
+    /// How far a voltage that is remembered may lie beyond the bus, words: what rounding to compare values changes.
+    pub rounding: i64,
 }
 
 impl Needs {
@@ -121,6 +123,11 @@ impl<'b> CurrentLoop<'_, 'b> {
             || self.l.spec.inverter.over_speed.is_some()
     }
 
+    /// Greatest magnitude of a remembered voltage, words.
+    pub(super) fn volts_bound(&self) -> i64 {
+        self.l.bus_interval().high + self.needs.rounding
+    }
+
     /// Whether the law observes the error of the modelled EMF.
     pub(super) fn observes(&self) -> bool {
         self.uses(EmfSource::Observer)
@@ -143,7 +150,7 @@ impl<'b> CurrentLoop<'_, 'b> {
         } else {
             0
         };
-        let volts = Interval::symmetric(l.bus_interval().high);
+        let volts = Interval::symmetric(self.volts_bound());
         let is_delayed = options.delay == 1;
         let needs_command = is_delayed && !needs.off_leg && !self.holds_emf() && !observes;
         Words {
@@ -190,7 +197,7 @@ impl<'b> CurrentLoop<'_, 'b> {
     fn observer_words(&self, e_bound: i64) -> ObserverWords<'b> {
         let (l, has_off_leg) = (self.l, self.needs.off_leg);
         let is_delayed = self.options.delay == 1;
-        let nets = Interval::symmetric(l.bus_interval().high + e_bound);
+        let nets = Interval::symmetric(self.volts_bound() + e_bound);
         ObserverWords {
             e_next: (is_delayed && has_off_leg).then(|| {
                 let range = Interval::symmetric(e_bound);

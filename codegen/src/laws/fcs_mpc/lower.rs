@@ -25,6 +25,7 @@ pub(super) fn lower(
                 off_leg: options.floating(),
                 emf: EmfUse::Deadbeat,
                 memory: 0,
+                rounding: 0,
             },
         };
         apply_best(&step, options, set_point);

@@ -27,6 +27,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
                 off_leg: false,
                 emf: EmfUse::FeedForward,
                 memory: 0,
+                rounding: 0,
             },
         };
         let front = step.front(set_point);
@@ -52,7 +53,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
             bus: front.bus,
             shifts: None,
         };
-        let command = modulator.three(l, &limited, common_mode);
-        step.remember(&front, command, Some(limited.u), None, turned);
+        let pulsed = modulator.three(l, &limited, common_mode);
+        step.remember(&front, pulsed.command, Some(limited.u), None, turned);
     })
 }

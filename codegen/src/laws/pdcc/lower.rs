@@ -32,6 +32,10 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
                 memory: 0,
+                rounding: match options.rounding_prediction {
+                    true => 1 << l.scale.voltage_bits,
+                    false => 0,
+                },
             },
         };
         let front = step.front(set_point);
@@ -67,14 +71,21 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             shifts: held
                 .map(|held| step.dead_time_shifts(front.reference, held, design.k_di, spread)),
         };
-        let (command, applied) = match front.commutation {
-            None => (modulator.three(l, &limited, common_mode), None),
+        let (command, u, applied) = match front.commutation {
+            None => {
+                let pulsed = modulator.three(l, &limited, common_mode);
+                let u = match options.rounding_prediction {
+                    true => pulsed.written(l, front.third, limited.u),
+                    false => limited.u,
+                };
+                (pulsed.command, u, None)
+            }
             Some(commutation) => {
                 let flag = commutation.flag;
                 let (command, applied) = modulator.pair(l, front.sector, flag, u, &limited);
-                (command, Some(applied))
+                (command, limited.u, Some(applied))
             }
         };
-        step.remember(&front, command, Some(limited.u), applied, turned);
+        step.remember(&front, command, Some(u), applied, turned);
     })
 }

@@ -60,6 +60,7 @@ pub(super) fn lower(
                 off_leg: false,
                 emf,
                 memory: 0,
+                rounding: 0,
             },
         };
         let front = step.front(set_point);
@@ -158,14 +159,14 @@ impl<'l, 'b> Regulator<'l, 'b> {
             shifts: held
                 .map(|held| step.dead_time_shifts(front.reference, held, stiffness, spread)),
         };
-        let command = modulator.three(l, &limited, common_mode);
+        let pulsed = modulator.three(l, &limited, common_mode);
         remembered.extend(integrated);
         remembered.extend(
             turning
                 .into_iter()
                 .flat_map(|turning| turning.kept(front.reference)),
         );
-        step.remember(front, command, Some(limited.u), None, remembered);
+        step.remember(front, pulsed.command, Some(limited.u), None, remembered);
     }
 
     /// The voltage that the regulators of the phases ask for.

@@ -59,6 +59,7 @@ pub(super) fn read(
     let surroundings = Surroundings {
         t_s: inverter.t_s,
         v_bus: inverter.v_bus.as_ref().map(|given| given.si),
+        timer_period: inverter.timer_period,
         resistance: motor.resistance,
         inductance: motor.inductance,
         rated_current: motor

@@ -361,6 +361,18 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
     "Dead-time compensation of the compare values, by the sign of the current; needs `dead_time`",
 );
 
+/// The rule of the prediction of rounding.
+pub(crate) const ROUNDING_PREDICTION: Rule = rule::choice::<bool>("rounding_prediction", "on")
+    .by_default(
+        "`on` with three pulsed legs and `delay: 1`, where a count of the PWM timer moves the current by more than 0.5 % of `rated_current` in a control period (v_bus Ts/(timer_period L)), else `off`",
+        &[("on", "a count of the timer moves the current")],
+    )
+    .about("Whether the prediction knows the voltage of the compare values as written: the commanded one, rounded to whole counts of the timer");
+
+/// Change of the current in a control period by a count of the PWM timer, over the rated current. Above it the rounding
+/// of compare values is predicted by default; below it, unpredicted, it makes the torque ripple by about a percent.
+const FELT_COUNT: f64 = 0.005;
+
 /// Change of the current in a control period by the dead time, over the rated current. Above it the dead time is
 /// compensated by default with a proportional reference too; below it, the torque ripples by about a percent.
 const FELT_DEAD_TIME: f64 = 0.02;
@@ -408,6 +420,8 @@ pub(crate) struct Surroundings {
     pub t_s: Option<f64>,
     /// Nominal bus voltage, volt.
     pub v_bus: Option<f64>,
+    /// Compare value of 100 % duty.
+    pub timer_period: Option<u32>,
     /// Phase resistance, ohm.
     pub resistance: Option<f64>,
     /// Phase inductance, henry.
@@ -873,6 +887,33 @@ pub(crate) fn compensates_by_default(
     };
     let always = common.reference == Reference::QuasiSquare || common.emf == EmfSource::Model;
     traits.pulses_three_legs && drive.dead_time > 0.0 && (always || felt().unwrap_or(false))
+}
+
+/// The prediction of rounding: for pulses of three legs, and with a computation delay; by default where it is felt.
+pub(crate) fn read_rounding_prediction(
+    reader: &Reader,
+    drive: &Surroundings,
+    (modulation, is_three_phase, delay): (&str, bool, u32),
+    errors: &mut Collector,
+) -> bool {
+    let option = ROUNDING_PREDICTION.name;
+    if !is_three_phase {
+        let why = "it is made for the pulses of three legs";
+        refuse(reader, option, ["modulation", modulation], why, errors);
+        return false;
+    }
+    if delay == 0 {
+        let why = "without a computation delay nothing is predicted";
+        refuse(reader, option, ["delay", "0"], why, errors);
+        return false;
+    }
+    let felt = || {
+        let count = drive.v_bus? * drive.t_s? / f64::from(drive.timer_period?);
+        let moved = count / drive.inductance?;
+        Some(moved > FELT_COUNT * drive.rated_current.as_ref()?.0)
+    };
+    let stated = reader.switch(errors, option);
+    stated.unwrap_or_else(|| felt().unwrap_or(false))
 }
 
 /// Dead-time compensation, which needs a stated dead time; none where it is not stated.

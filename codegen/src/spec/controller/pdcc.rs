@@ -1,9 +1,10 @@
 //! Options of predictive deadbeat current control, and how they are read.
 
 use super::common::{
-    self, CommonMode, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions, Reference,
-    Surroundings, Traits, compensates_by_default, read_common, read_common_mode,
-    read_dead_time_compensation, refuse, refuse_commutation,
+    self, CommonMode, DEAD_TIME_COMPENSATION, EmfSource, LimitRule, LoopOptions,
+    ROUNDING_PREDICTION, Reference, Surroundings, Traits, compensates_by_default, read_common,
+    read_common_mode, read_dead_time_compensation, read_rounding_prediction, refuse,
+    refuse_commutation,
 };
 use super::table2::{ZERO, ZeroVector, read_zero, refuse_pulse_options, refuse_turned};
 use super::{Options, TurnsOff};
@@ -33,6 +34,8 @@ pub struct PdccSpec {
     pub saturation: LimitRule,
     /// Whether compare values are compensated for the dead time.
     pub dead_time_compensation: bool,
+    /// Whether the prediction knows the rounding of compare values.
+    pub rounding_prediction: bool,
     /// Where the pulses of three legs lie; of effect with [`Modulation::ThreePhase`] only.
     pub common_mode: CommonMode,
     /// Options that all controllers share.
@@ -73,6 +76,9 @@ impl Options for PdccSpec {
         Row::of(DEAD_TIME_COMPENSATION, |options| {
             if_on(options.dead_time_compensation)
         }),
+        Row::of(ROUNDING_PREDICTION, |options| {
+            if_on(options.rounding_prediction)
+        }),
         Row::of(common::COMMON_MODE, |options| {
             common::common_mode_line(options.common_mode)
         }),
@@ -104,6 +110,8 @@ impl Options for PdccSpec {
             let why = "the EMF of a floating leg cannot be seen, so it cannot be held; choose `emf: estimated`, `emf: model` or `emf: observer`";
             refuse(reader, "emf", ["modulation", "pair"], why, errors);
         }
+        let pulses = (modulation.word(), without_sectors, common.delay);
+        let rounding_prediction = read_rounding_prediction(reader, surroundings, pulses, errors);
         if !without_sectors {
             refuse_turned(reader, common.reference, modulation.word(), errors);
         }
@@ -113,6 +121,7 @@ impl Options for PdccSpec {
             saturation,
             dead_time_compensation: compensation
                 .unwrap_or_else(|| compensates_by_default(surroundings, traits, &common)),
+            rounding_prediction,
             common_mode,
             common,
         })

@@ -42,6 +42,7 @@ fn duty(op: Op) -> Duty {
         | Op::Literal(_)
         | Op::Abs(_)
         | Op::MulLimited { .. }
+        | Op::Remainder(..)
         | Op::Min(..)
         | Op::Max(..)
         | Op::Lesser(..)

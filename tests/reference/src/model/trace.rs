@@ -17,7 +17,8 @@ pub struct Trace {
     pub net: [f64; 2],
     /// Demanded voltage before limiting, volt (PHCC: 1/b times the predicted error).
     pub u_unsat: [f64; 2],
-    /// The same after limiting, or that of the chosen vector, volt.
+    /// The same after limiting, or that of the chosen vector, volt; the bit-true one as rounded to compare values, where
+    /// the prediction knows that.
     pub u: [f64; 2],
     /// Electrical angle at the sample, radians (0 where the variant has no angle).
     pub theta: f64,

@@ -154,6 +154,9 @@ options! {
         /// Whether compare values are shifted to compensate the dead time.
         #[serde(default)]
         dead_time_compensation: Switch,
+        /// Whether the prediction knows the rounding of compare values.
+        #[serde(default)]
+        rounding_prediction: Switch,
         /// Common mode of three pulsed legs.
         #[serde(default)]
         common_mode: CommonMode,

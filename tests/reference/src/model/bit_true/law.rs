@@ -60,7 +60,7 @@ pub struct Inputs<'a, W> {
 #[derive(Clone, Copy, Debug)]
 pub struct Decision<W> {
     pub u_unsat: [W; 2],
-    /// Limited to the inverter's range; becomes `v_x_cmd`.
+    /// Limited to the inverter's range, or what the compare values make of that; becomes `v_x_cmd`.
     pub u: [W; 2],
     pub reach: Reach,
     /// Number of the chosen vector (controllers of whole vectors).

@@ -36,7 +36,7 @@ impl<W: Word> PPwm<W> {
             u,
             reach,
             vector: 0,
-            command: pulses::three(now, legs, [word(0.0); 3], rule, false),
+            command: pulses::three(now, legs, [word(0.0); 3], rule, false).0,
             integral: now.integral,
             hysteresis: now.hysteresis,
             past: now.past,

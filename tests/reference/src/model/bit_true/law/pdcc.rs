@@ -8,7 +8,7 @@ use super::{Decision, Inputs, pulses};
 use crate::exact::Word;
 use crate::model::bit_true::limit::Limited;
 use crate::model::bit_true::scale::Scale;
-use crate::{Error, Modulation, Saturation, Spec};
+use crate::{Error, Modulation, Saturation, Spec, Switch};
 
 #[derive(Clone, Debug)]
 pub struct Pdcc<W> {
@@ -16,6 +16,8 @@ pub struct Pdcc<W> {
     saturation: Saturation,
     form: Form<W>,
     dead_time: DeadTime<W>,
+    /// Whether the prediction knows the rounding of compare values.
+    rounding: bool,
     common_mode: CommonModeRule<W>,
     of_pair: CommonModeRule<W>,
     table2: Option<Table2<W>>,
@@ -28,6 +30,7 @@ impl<W: Word> Pdcc<W> {
             saturation: options.saturation,
             form: Form::new(options.saturation == Saturation::TorquePriority, scale)?,
             dead_time: DeadTime::new(spec, options.modulation == Modulation::ThreePhase, scale)?,
+            rounding: options.rounding_prediction == Switch::On,
             common_mode: CommonModeRule::new(spec, options.common_mode, scale)?,
             of_pair: CommonModeRule::of_pair(spec, options.modulation == Modulation::Pair, scale)?,
             table2: Table2::of(
@@ -70,10 +73,15 @@ impl<W: Word> Pdcc<W> {
             spread,
         } = rule.limited(now, self.saturation, u_unsat, e);
         let shifts = self.dead_time.shifts(now, self.form.kept(now), spread);
-        let command = if self.pair && !now.commutating {
-            pulses::pair(now, u_unsat, shifts, &self.of_pair)
+        if self.pair && !now.commutating {
+            let command = pulses::pair(now, u_unsat, shifts, &self.of_pair);
+            return Modulated { u, reach, command };
+        }
+        let (command, duties) = pulses::three(now, legs, shifts, rule, self.pair);
+        let u = if self.rounding {
+            pulses::written(now, u, duties)
         } else {
-            pulses::three(now, legs, shifts, rule, self.pair)
+            u
         };
         Modulated { u, reach, command }
     }

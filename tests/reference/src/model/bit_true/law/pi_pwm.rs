@@ -137,7 +137,7 @@ impl<W: Word> PiPwm<W> {
             spread,
         } = self.legs.limited(now, self.saturation, u_unsat, now.e);
         let shifts = self.dead_time.shifts(now, flow, spread);
-        let command = pulses::three(now, legs, shifts, &self.legs, false);
+        let (command, _) = pulses::three(now, legs, shifts, &self.legs, false);
         Modulated { u, reach, command }
     }
 

@@ -2,19 +2,33 @@
 
 use super::common_mode::CommonModeRule;
 use super::{Command, Inputs};
-use crate::exact::{Word, all_three, floor, halve, to_u16, within, word};
+use crate::exact::{Word, all_three, both, floor, halve, to_u16, within, word};
 use crate::model::sector;
 use hexagen::{LegState, Legs};
 
 /// A timer compare value from a word of integer and half counts.
 #[inline]
 fn compare<W: Word>(now: &Inputs<W>, counts: W, top: f64) -> u16 {
+    to_u16(within(nearest(now, counts), 0.0, top))
+}
+
+/// The nearest whole count.
+#[inline]
+fn nearest<W: Word>(now: &Inputs<W>, counts: W) -> W {
+    floor((counts + now.k.half_count) * now.k.to_counts)
+}
+
+/// The voltage `u` as the compare values of three legs of these duties make it: without what rounding takes.
+#[inline]
+pub fn written<W: Word>(now: &Inputs<W>, u: [W; 2], duties: [W; 3]) -> [W; 2] {
     let k = now.k;
-    to_u16(within(
-        floor((counts + k.half_count) * k.to_counts),
-        0.0,
-        top,
-    ))
+    let count = 2.0 * k.half_count;
+    let rests = duties.map(|duty| {
+        let rest = duty + k.half_count - nearest(now, duty) * count;
+        within(rest, 0.0, count - 1.0)
+    });
+    let mean = k.k_third.mul(rests[0] + rests[1] + rests[2]);
+    both(|x| u[x] - rests[x] + mean)
 }
 
 /// The voltage with the same duty on the nominal bus.
@@ -34,7 +48,7 @@ pub fn compare_up_to<W: Word>(now: &Inputs<W>, t: W, shift: W, top: f64) -> u16 
     compare(now, nominal(now, t) + shift, top)
 }
 
-/// Three pulsed legs with voltages about the middle of the bus; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.
+/// Three pulsed legs with voltages about the middle of the bus, and their duties; with terminal voltages if the variant keeps them. `shifts` compensate the dead time.
 #[inline]
 pub fn three<W: Word>(
     now: &Inputs<W>,
@@ -42,7 +56,7 @@ pub fn three<W: Word>(
     shifts: [W; 3],
     common_mode: &CommonModeRule<W>,
     terminals: bool,
-) -> Command<W> {
+) -> (Command<W>, [W; 3]) {
     let terminal = if terminals {
         let half_bus = halve(now.v_bus);
         all_three(|x| within(centred[x] + half_bus, 0.0, now.v_bus))
@@ -51,15 +65,17 @@ pub fn three<W: Word>(
     };
     let pulses = all_three(|x| nominal(now, centred[x]) + shifts[x]);
     let lift = common_mode.lift(now.k, pulses);
-    Command {
+    let duties = all_three(|x| pulses[x] + lift);
+    let command = Command {
         legs: Legs::new(
-            all_three(|x| compare(now, pulses[x] + lift, common_mode.top)),
+            all_three(|x| compare(now, duties[x], common_mode.top)),
             [LegState::Pulsed; 3],
         )
         .into(),
         terminal,
         off: 0,
-    }
+    };
+    (command, duties)
 }
 
 /// One pulsed leg of the conducting pair, the other low, the third off; `shifts` compensate the
