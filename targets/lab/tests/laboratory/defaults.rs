@@ -199,6 +199,32 @@ fn exact_control_ripples_no_more_than_a_drive() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
+/// A count of their timer moves the current of these by 0.5 to 1.5 % of the rated one.
+const COARSE_TIMERS: [&str; 3] = ["br2804-1700kv", "tekin-redline-4600kv", "velineon-3500"];
+
+/// Unpredicted, the rounding of two commands adds up in the current: predicted, that of one is left.
+#[test]
+fn rounding_that_is_predicted_ripples_less() {
+    let plant = PlantOptions::default();
+    let parts: Vec<(&str, f64)> = COARSE_TIMERS
+        .into_par_iter()
+        .map(|name| {
+            let motor = SelectedMotor::find(name, &plant).expect("is in the library");
+            let [off, on] = ["off", "on"].map(|state| {
+                let variant = format!("pdcc:rounding_prediction={state}");
+                let drive = motor.prepare(Some(&variant)).expect("generates");
+                let point = RatedPoint::measure(&drive, 25, 1.0).expect("runs");
+                point.ripple_pct.expect("runs")
+            });
+            (name, on / off)
+        })
+        .collect();
+    println!("{parts:?}");
+    for (motor, part) in parts {
+        assert!((0.4..0.8).contains(&part), "{motor}: {part}");
+    }
+}
+
 /// Motors of other makers, on which nothing is tuned.
 #[test]
 fn every_motor_set_aside_is_right_by_default() {
@@ -221,9 +247,8 @@ const DRAWN: [usize; 2] = [6, 200];
 /// Draws whose starts are tried, or as many as there are.
 const STARTED: usize = 20;
 
-/// Nearly all points are right but those that bus, control period or timer limit by the data of motor and inverter: of
-/// the nightly run's 3200 points 30 more are not, of five motors, and 24 of these of two motors whose current a count
-/// of their timer moves by 1.5 % of the rated one. No start fails.
+/// Nearly all points are right but those that bus or control period limits by the data of motor and inverter: of the
+/// nightly run's 3200 points 3 more are not, of two motors (3.1 and 7.5 % of ripple for 3 and 7). No start fails.
 #[test]
 fn random_motors_are_right_by_default() {
     // Motors with an edge timer, and periods short enough for them.
@@ -246,7 +271,7 @@ fn random_motors_are_right_by_default() {
     let tripping: Vec<_> = trips.map(|(at, ..)| at).collect();
     assert!(tripping.is_empty(), "{tripping:?}");
     assert!(
-        80 * wrong.len() < 16 * drawn.len(),
+        400 * wrong.len() < 16 * drawn.len(),
         "{}: {wrong:#?}",
         wrong.len()
     );
