@@ -704,3 +704,31 @@ fn a_dead_time_that_is_felt_is_compensated_by_default() {
         );
     }
 }
+
+/// The motor's current moves by 0.101 A, 0.51 % of the rated one, in a count of a timer of 4.3 MHz.
+#[test]
+fn a_rounding_that_is_felt_is_predicted_by_default() {
+    let predicts = |clock: &str, controller: &str| {
+        let inverter =
+            format!("f_pwm = \"20 kHz\"\ntimer_clock = \"{clock}\"\nadc_range = \"40 A\"\n");
+        let (spec, _) = checked(&inverter, controller);
+        spec.to_toml().contains("rounding_prediction = \"on\"")
+    };
+    let pdcc = |options: &str| format!("kind = \"pdcc\"\n{options}");
+    for (clock, controller, expected) in [
+        ("4.4 MHz", pdcc(""), false),
+        ("4.3 MHz", pdcc(""), true),
+        ("4.4 MHz", pdcc("rounding_prediction = \"on\""), true),
+        ("4.3 MHz", pdcc("rounding_prediction = \"off\""), false),
+        ("4.3 MHz", pdcc("delay = 0"), false),
+        ("4.3 MHz", pdcc("modulation = \"pair\""), false),
+        ("4.3 MHz", pdcc("modulation = \"table2\""), false),
+        ("4.3 MHz", "kind = \"pi-pwm\"".to_owned(), false),
+    ] {
+        assert_eq!(
+            predicts(clock, &controller),
+            expected,
+            "{clock} {controller}"
+        );
+    }
+}
