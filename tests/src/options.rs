@@ -83,8 +83,8 @@ const REFUSED: [(&str, &str, &str); 3] = [
 ];
 
 /// Values of independent options that the second option's value rules out: intervals have no pulses to shift, and the bus
-/// current of them is not computed.
-const APART: [[(&str, &str); 2]; 6] = [
+/// current of them is not computed; rounding is predicted of three pulses, and over a delay.
+const APART: [[(&str, &str); 2]; 10] = [
     [("dead_time", "compensated"), ("modulation", "table2")],
     [
         ("dead_time", "compensated"),
@@ -97,6 +97,10 @@ const APART: [[(&str, &str); 2]; 6] = [
         ("supply", "limited_both_ways"),
         ("modulation", "table2_pair_low"),
     ],
+    [("rounding", "predicted"), ("modulation", "pair")],
+    [("rounding", "predicted"), ("modulation", "table2")],
+    [("rounding", "predicted"), ("modulation", "table2_pair_low")],
+    [("rounding", "predicted"), ("delay", "0")],
 ];
 
 /// A switching table that no derivation gives, with every vector.

@@ -54,9 +54,11 @@ impl CommonModeRule {
         self.policy == CommonMode::Centred
     }
 
-    /// Whether the voltage limit lifts by half the period what it centres.
-    pub fn lifts(self, bus: Bus<'_>) -> bool {
-        self.is_centred() && bus.ratio.is_none()
+    /// The rule, where the voltage limit lifts the legs to where their pulses lie: on a fixed bus, and pulses that
+    /// are not centred only if nothing shifts them or lowers one of them behind the limit.
+    pub fn in_limit(self, bus: Bus<'_>, shifted: bool) -> Option<Self> {
+        let is_last = self.is_centred() || !shifted && self.second >= self.top;
+        (bus.ratio.is_none() && is_last).then_some(self)
     }
 
     /// What the stage does that makes the pulses.
@@ -182,16 +184,35 @@ impl CommonModeRule {
         l.number(name, value, &doc)
     }
 
+    /// Largest duty, with half a count to round.
+    pub fn pulse_top<'b>(self, l: &Lowering<'b>) -> Expr<'b> {
+        Self::pulse(l, self.top, ["pulse_top", ""])
+    }
+
+    /// What lifts voltages of these extremes, words of the nominal bus, to where their pulses lie; `middle` is half the
+    /// sum of the extremes, none if that is 0.
+    pub fn lift<'b>(
+        self,
+        l: &Lowering<'b>,
+        middle: Option<Expr<'b>>,
+        [high, low]: [Expr<'b>; 2],
+    ) -> Expr<'b> {
+        let half_count = || l.b.number(1 << (l.scale.voltage_bits - 1));
+        let half = || {
+            let half = half_period(l);
+            middle.map_or(half, |middle| half - middle)
+        };
+        match self.policy {
+            CommonMode::Centred => half(),
+            CommonMode::Readable => half().min(self.pulse_top(l) - high),
+            CommonMode::ClampedLow => half_count() - low,
+        }
+    }
+
     /// Lifts voltages of zero middle, words of the nominal bus, to where their pulses lie.
     pub fn lifted<'b>(self, l: &Lowering<'b>, volts: Phases<'b, 3>) -> Phases<'b, 3> {
-        let half_count = 1_i32 << (l.scale.voltage_bits - 1);
-        let half = || half_period(l);
         let [high, low] = volts.extremes(["pulse_max", "pulse_min"]);
-        let lift = match self.policy {
-            CommonMode::Centred => half(),
-            CommonMode::Readable => half().min(Self::pulse(l, self.top, ["pulse_top", ""]) - high),
-            CommonMode::ClampedLow => -low + half_count,
-        };
+        let lift = self.lift(l, None, [high, low]);
         let lift = if self.second < self.top {
             named! {
                 let pulse_second = volts.sum() - high - low;

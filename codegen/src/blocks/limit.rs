@@ -4,7 +4,7 @@
 //! saturation and all else is off the normal path.
 
 use super::modulate::half_period;
-use super::{Bus, Lowering};
+use super::{Bus, CommonModeRule, Lowering};
 use crate::interface::Rounding;
 use crate::ir::{Coefficient, Expr, Flag, Interval, Named, Phases, named, pick};
 use crate::spec::LimitRule;
@@ -14,8 +14,8 @@ use crate::spec::LimitRule;
 pub struct Limited<'b> {
     /// Phase voltages a, b.
     pub u: Phases<'b>,
-    /// Leg voltages of centred pulses: phase voltages less floor((max + min) / 2), plus half the
-    /// period if the hexagon `lifts`.
+    /// Leg voltages of centred pulses: phase voltages less floor((max + min) / 2); lifted to where the pulses lie if
+    /// the hexagon has a `lift`.
     pub centred: Phases<'b, 3>,
     /// Whether the voltage was outside.
     pub cut: Flag<'b>,
@@ -87,8 +87,8 @@ pub struct Hexagon<'b> {
     pub bus: Bus<'b>,
     /// 1/3.
     pub third: Coefficient,
-    /// Whether centred voltages are lifted by half the period.
-    pub lifts: bool,
+    /// What lifts leg voltages to where their pulses lie.
+    pub lift: Option<CommonModeRule>,
 }
 
 impl<'b> Hexagon<'b> {
@@ -115,9 +115,9 @@ impl<'b> Hexagon<'b> {
             extent,
             middle: middle_unsat,
         };
-        let centred = if self.lifts {
+        let centred = if let Some(rule) = self.lift {
             named! {
-                let lift_unsat = half_period(l) - middle_unsat;
+                let lift_unsat = rule.lift(l, Some(middle_unsat), [high, low]);
             }
             u.map(|u| u + lift_unsat)
         } else {
@@ -256,11 +256,19 @@ impl<'b> Hexagon<'b> {
 
     /// Centred leg voltages, lifted where the hexagon's are; added to the open stage.
     fn lifted(&self, l: &Lowering<'b>, legs: Phases<'b, 3>) -> Phases<'b, 3> {
-        if !self.lifts {
+        let Some(rule) = self.lift else {
             return legs;
+        };
+        if rule.is_centred() {
+            named! {
+                let lifted_limited = legs.map(|leg| leg + half_period(l));
+            }
+            return lifted_limited;
         }
+        let extremes = legs.extremes(["limited_max", "limited_min"]);
         named! {
-            let lifted_limited = legs.map(|leg| leg + half_period(l));
+            let lift_limited = rule.lift(l, None, extremes);
+            let lifted_limited = legs.map(|leg| (leg + lift_limited).clamp(0, rule.pulse_top(l)));
         }
         lifted_limited
     }

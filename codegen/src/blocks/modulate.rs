@@ -126,7 +126,7 @@ pub struct Modulator<'b> {
 }
 
 impl<'b> Modulator<'b> {
-    /// Three pulses of a limited voltage, which is lifted already where [`CommonModeRule::lifts`] says so.
+    /// Three pulses of a limited voltage, which is lifted already where [`CommonModeRule::in_limit`] says so.
     pub fn three(
         &self,
         l: &Lowering<'b>,
@@ -135,7 +135,8 @@ impl<'b> Modulator<'b> {
     ) -> Pulsed<'b> {
         let doc = common_mode.doc();
         l.b.stage("modulate", &[doc]);
-        let duty = if common_mode.lifts(self.bus) {
+        let is_lifted = common_mode.in_limit(self.bus, self.shifts.is_some());
+        let duty = if is_lifted.is_some() {
             match self.shifts {
                 None => limited.centred,
                 Some(shifts) => (limited.centred + shifts).named("duty"),

@@ -148,7 +148,7 @@ impl<'b> Table2<'b> {
                 ..self.bus
             },
             third: self.third,
-            lifts: false,
+            lift: None,
         };
         let priority = priority.of_plane(|e| {
             named! {

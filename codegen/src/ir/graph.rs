@@ -269,39 +269,66 @@ impl Function {
     /// each of them by 2/3 limit (max and min are at most `limit` apart, and two of the three share
     /// a sign), max + min, which is minus the middle one, by 1/3 limit, and each less floor((max +
     /// min)/2), perhaps plus a constant, by 1/2 limit: the largest is ceil(spread/2) above it and
-    /// the smallest floor(spread/2) below.
+    /// the smallest floor(spread/2) below. Each less max is in [-limit, 0], each less min in [0, limit].
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
         let Some((limit, legs, high, low)) = self.spread_condition(condition) else {
             return own;
         };
         let limit = self.node(limit).interval.high.max(0);
-        let (centre, bound) = if legs.contains(&value) {
-            (0, limit * 2 / 3)
+        let bound = if legs.contains(&value) {
+            Interval::symmetric(limit * 2 / 3)
         } else if self.is_half_sum(value, high, low) {
-            (0, limit / 6 + 1)
-        } else if let Some(centre) = self.centre_of(value, legs, [high, low]) {
-            (centre, (limit + 1) / 2)
+            Interval::symmetric(limit / 6 + 1)
+        } else if let Some(bound) = self.lifted_leg(value, limit, legs, [high, low]) {
+            bound
         } else {
             return own;
         };
-        Interval::new(own.low.max(centre - bound), own.high.min(centre + bound))
+        Interval::new(own.low.max(bound.low), own.high.min(bound.high))
     }
 
-    /// Centre of a centred leg: 0 for `leg - middle`, the number for `leg + (number - middle)`.
-    fn centre_of(&self, value: Value, legs: [Value; 3], [high, low]: [Value; 2]) -> Option<i64> {
+    /// Interval of a leg `leg - middle` or `leg + lift`.
+    fn lifted_leg(
+        &self,
+        value: Value,
+        limit: i64,
+        legs: [Value; 3],
+        extremes: [Value; 2],
+    ) -> Option<Interval> {
         match self.node(value).op {
-            Op::Sub(leg, middle) => {
-                (legs.contains(&leg) && self.is_half_sum(middle, high, low)).then_some(0)
-            }
-            Op::Add(leg, lift) if legs.contains(&leg) => match self.node(lift).op {
-                Op::Sub(number, middle) if self.is_half_sum(middle, high, low) => {
-                    let Interval { low, high } = self.node(number).interval;
-                    (low == high).then_some(low)
-                }
-                _ => None,
-            },
+            Op::Sub(leg, middle) if legs.contains(&leg) => self.above(middle, limit, extremes),
+            Op::Add(leg, lift) if legs.contains(&leg) => self.lifted(lift, limit, extremes),
             _ => None,
+        }
+    }
+
+    /// Interval of any leg plus `lift`: a number less middle, max or min of the legs, or the least of two such.
+    fn lifted(&self, lift: Value, limit: i64, extremes: [Value; 2]) -> Option<Interval> {
+        match self.node(lift).op {
+            Op::Sub(number, origin) => {
+                let Interval { low, high } = self.node(number).interval;
+                let above = self.above(origin, limit, extremes)?;
+                (low == high).then(|| Interval::new(above.low + low, above.high + low))
+            }
+            Op::Min(one, other) | Op::Lesser(one, other) => {
+                let [one, other] = [one, other].map(|lift| self.lifted(lift, limit, extremes));
+                Some(one?.corners(other?, i64::min))
+            }
+            _ => None,
+        }
+    }
+
+    /// Interval of any leg less `origin`: middle, max or min of the legs.
+    fn above(&self, origin: Value, limit: i64, [high, low]: [Value; 2]) -> Option<Interval> {
+        if self.is_half_sum(origin, high, low) {
+            Some(Interval::symmetric((limit + 1) / 2))
+        } else if origin == high {
+            Some(Interval::new(-limit, 0))
+        } else if origin == low {
+            Some(Interval::new(0, limit))
+        } else {
+            None
         }
     }
 

@@ -387,8 +387,11 @@ fn a_spread_bounds_its_legs_and_their_middle() {
         "centred_a",
         "centred_c",
         "lifted_b",
+        "below_a",
+        "above_c",
+        "least_b",
     ];
-    let mut tight = [0; 7];
+    let mut tight = [0; 10];
     for limit in 0..=18 {
         let program = program(&[range, range], |_, x| {
             named! {
@@ -406,6 +409,9 @@ fn a_spread_bounds_its_legs_and_their_middle() {
             let _ = (a - middle).named("centred_a");
             let _ = (c - middle).named("centred_c");
             let _ = (b + (7 - middle)).named("lifted_b");
+            let _ = (a + (9 - high)).named("below_a");
+            let _ = (c + (4 - low)).named("above_c");
+            let _ = (b + (7 - middle).min(9 - high)).named("least_b");
         });
         let step = &program.step;
         let all: Vec<Vec<i64>> = choices(&[range, range])

@@ -101,7 +101,7 @@ const VARIANTS: [(&str, &str, Fields); 32] = [
     ),
     (
         "pdcc.dead-time",
-        "pdcc:reference=quasi_square,emf=held,dead_time_compensation=on",
+        "pdcc:reference=quasi_square,emf=held,dead_time_compensation=on,rounding_prediction=on",
         &[("inverter", "dead_time", "900 ns")],
     ),
     (

@@ -44,7 +44,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
         let hexagon = Hexagon {
             bus: common_mode.reach(l, front.bus),
             third: front.third,
-            lifts: common_mode.lifts(front.bus),
+            lift: common_mode.in_limit(front.bus, false),
         };
         let limited = hexagon.limit(l, Priority::of(options.saturation, emf), u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);

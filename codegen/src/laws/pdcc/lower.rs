@@ -60,7 +60,7 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
             bus: common_mode.reach(l, front.bus),
             third: front.third,
             // A pair needs the centred voltages themselves, a measured bus those before scaling.
-            lifts: !pair && common_mode.lifts(front.bus),
+            lift: (common_mode.in_limit(front.bus, held.is_some())).filter(|_| !pair),
         };
         let limited = hexagon.limit(l, priority, u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);

@@ -146,7 +146,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let hexagon = Hexagon {
             bus: common_mode.reach(l, front.bus),
             third: front.third,
-            lifts: common_mode.lifts(front.bus),
+            lift: common_mode.in_limit(front.bus, held.is_some()),
         };
         let limited = hexagon.limit(l, priority, u);
         let limited = common_mode.second_readable(l, front.third, front.bus, limited);
