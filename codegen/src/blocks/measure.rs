@@ -98,7 +98,9 @@ pub fn find_sector<'b>(l: &Lowering<'b>, sample: &Sample<'b>, sector_prev: Memor
         let sector_seen = hall_sectors(l).at(sample.hall);
         let sector = sample.hall.is(0).choose(last, sector_seen);
         let sector_changed = sector.is_not(last);
-        let edge = sector_changed & last.is_not(0);
+        // Before the first sample there is no last sector to leave.
+        let sector_left = last.is(0).choose(sector, last);
+        let edge = sector.is_not(sector_left);
     }
     Hall {
         sector,
