@@ -265,7 +265,7 @@ impl<'b> Hexagon<'b> {
             }
             return lifted_limited;
         }
-        let extremes = legs.extremes(["limited_max", "limited_min"]);
+        let extremes = legs.extremes(["highest_limited", "lowest_limited"]);
         named! {
             let lift_limited = rule.lift(l, None, extremes);
             let lifted_limited = legs.map(|leg| (leg + lift_limited).clamp(0, rule.pulse_top(l)));

@@ -24,6 +24,10 @@ macro_rules! drives_for {
             CheetahPdcc, step_mit_mini_cheetah_pdcc: "../motors/mit-mini-cheetah.toml", pdcc {};
             CheetahPdccFieldWeakening, step_mit_mini_cheetah_pdcc_field_weakening:
                 "../motors/mit-mini-cheetah.toml", pdcc { field_weakening: on };
+            CheetahPdccRounding, step_mit_mini_cheetah_pdcc_rounding:
+                "../motors/mit-mini-cheetah.toml", pdcc { rounding_prediction: on };
+            CheetahPdccResidual, step_mit_mini_cheetah_pdcc_residual:
+                "../motors/mit-mini-cheetah.toml", pdcc { residual_timeout: 5 ms };
 
             HurstPdccSpeed, step_hurst_long_pdcc_speed: "../motors/hurst-long.toml", pdcc { speed_loop: on };
 
@@ -31,6 +35,8 @@ macro_rules! drives_for {
             HubPdcc, step_hoverboard_hub_pdcc: "../motors/hoverboard-hub.toml", pdcc {};
             HubPdccHallLearning, step_hoverboard_hub_pdcc_hall_learning:
                 "../motors/hoverboard-hub.toml", pdcc { hall_learning: on };
+            HubPdccDeadTime, step_hoverboard_hub_pdcc_dead_time:
+                "../motors/hoverboard-hub.toml", pdcc { dead_time_compensation: on };
 
             // The paper's modulator, whose command has three intervals.
             TrivediPdccTable2, step_trivedi_keshri_660w_pdcc_table2:

@@ -88,6 +88,30 @@ pub fn blocks(target: Target) -> &'static [Block] {
                 ],
                 budget: 10,
             },
+            Block {
+                name: "prediction of rounding",
+                steps: [
+                    "step_mit_mini_cheetah_pdcc_rounding",
+                    "step_mit_mini_cheetah_pdcc",
+                ],
+                budget: 12,
+            },
+            Block {
+                name: "watch over the residual",
+                steps: [
+                    "step_mit_mini_cheetah_pdcc_residual",
+                    "step_mit_mini_cheetah_pdcc",
+                ],
+                budget: 25,
+            },
+            Block {
+                name: "dead-time compensation",
+                steps: [
+                    "step_hoverboard_hub_pdcc_dead_time",
+                    "step_hoverboard_hub_pdcc",
+                ],
+                budget: 60,
+            },
         ],
         Target::CortexM0 | Target::Riscv32 => &[],
     }
