@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 32] = [
+const VARIANTS: [(&str, &str, Fields); 29] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     ("pdcc.table2", "pdcc:modulation=table2,zero=pair_low", &[]),
     ("pi-pwm.table2", "pi-pwm:modulation=table2", &[]),
@@ -56,21 +56,6 @@ const VARIANTS: [(&str, &str, Fields); 32] = [
         &[],
     ),
     (
-        "pdcc.measured-bus",
-        "pdcc",
-        &[
-            ("inverter", "v_bus", "measured"),
-            ("inverter", "bus_adc_bits", "12"),
-            ("inverter", "bus_adc_range", "80 V"),
-            ("inverter", "stall_timeout", "200 ms"),
-        ],
-    ),
-    (
-        "pdcc.speed-loop",
-        "pdcc:reference=quasi_square,speed_loop=on",
-        &[("motor", "inertia", "3 kg cm2")],
-    ),
-    (
         "pdcc.speed-ramp",
         "pdcc:reference=quasi_square,speed_loop=on,acceleration_limit=5000 rpm/s",
         &[("motor", "inertia", "3 kg cm2")],
@@ -82,14 +67,18 @@ const VARIANTS: [(&str, &str, Fields); 32] = [
             ("inverter", "v_bus", "measured"),
             ("inverter", "bus_adc_bits", "12"),
             ("inverter", "bus_adc_range", "80 V"),
+            ("inverter", "stall_timeout", "200 ms"),
             ("inverter", "braking_fade", "4 V"),
             ("inverter", "motoring_fade", "4 V"),
         ],
     ),
     (
         "pdcc.slew-rate",
-        "pdcc:reference=quasi_square,slew_rate=200 A/s",
-        &[("inverter", "hall_glitches", "3")],
+        "pdcc:reference=quasi_square,emf=estimated,slew_rate=200 A/s",
+        &[
+            ("inverter", "hall_glitches", "3"),
+            ("inverter", "over_speed", "2600 rpm"),
+        ],
     ),
     (
         "pdcc.bus-current",
@@ -135,11 +124,6 @@ const VARIANTS: [(&str, &str, Fields); 32] = [
             ("inverter", "bus_adc_bits", "12"),
             ("inverter", "bus_adc_range", "65 V"),
         ],
-    ),
-    (
-        "pdcc.over-speed",
-        "pdcc:reference=quasi_square,emf=estimated",
-        &[("inverter", "over_speed", "2600 rpm")],
     ),
     (
         "pdcc.angle",
