@@ -32,9 +32,10 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
                 memory: 0,
-                rounding: match options.rounding_prediction {
-                    true => 1 << l.scale.voltage_bits,
-                    false => 0,
+                rounding: if options.rounding_prediction {
+                    1 << l.scale.voltage_bits
+                } else {
+                    0
                 },
             },
         };
@@ -74,9 +75,10 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         let (command, u, applied) = match front.commutation {
             None => {
                 let pulsed = modulator.three(l, &limited, common_mode);
-                let u = match options.rounding_prediction {
-                    true => pulsed.written(l, front.third, limited.u),
-                    false => limited.u,
+                let u = if options.rounding_prediction {
+                    pulsed.written(l, front.third, limited.u)
+                } else {
+                    limited.u
                 };
                 (pulsed.command, u, None)
             }
