@@ -275,6 +275,7 @@ fn shifts(text: &str, code: &[Range<usize>], change: i64) -> Vec<Edit> {
         "mul_floor(",
         "mul_add_floor(",
         "divide(",
+        "remainder(",
     ]
     .iter()
     .flat_map(|name| calls(text, code, name))

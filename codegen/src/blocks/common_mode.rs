@@ -76,6 +76,17 @@ impl CommonModeRule {
         }
     }
 
+    /// What the limit does that lifts the legs to where their pulses lie, unless that is the middle.
+    pub fn doc_of_lift(self) -> Option<&'static str> {
+        match self.policy {
+            CommonMode::Centred => None,
+            CommonMode::Readable => Some(
+                "Legs are lifted to the middle of the period, or as far as the highest must be low.",
+            ),
+            CommonMode::ClampedLow => Some("Legs are lifted as far as the lowest stays low."),
+        }
+    }
+
     /// The largest spread of three phase voltages that fits the legs, as a bus: centred legs leave as much below as above.
     pub fn reach<'b>(self, l: &Lowering<'b>, bus: Bus<'b>) -> Bus<'b> {
         let whose = "legs reach which must be low for a while";
@@ -139,7 +150,7 @@ impl CommonModeRule {
             self.second,
             ["k_second", "v_second", "the second highest leg reaches"],
         );
-        let legs = limited.centred;
+        let legs = limited.legs;
         let [high, low] = legs.extremes(["leg_high", "leg_low"]);
         named! {
             let second = legs.sum() - high - low;
@@ -167,7 +178,8 @@ impl CommonModeRule {
         ]);
         Limited {
             u: Phases([u_a, u_b]),
-            centred: Phases([leg_a, leg_b, leg_c]),
+            legs: Phases([leg_a, leg_b, leg_c]),
+            is_lifted: limited.is_lifted,
             cut: limited.cut,
             spread: limited.spread,
         }
@@ -190,7 +202,7 @@ impl CommonModeRule {
     }
 
     /// What lifts voltages of these extremes, words of the nominal bus, to where their pulses lie; `middle` is half the
-    /// sum of the extremes, none if that is 0.
+    /// sum of the extremes, none of legs that are centred already.
     pub fn lift<'b>(
         self,
         l: &Lowering<'b>,

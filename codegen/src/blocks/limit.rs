@@ -16,7 +16,9 @@ pub struct Limited<'b> {
     pub u: Phases<'b>,
     /// Leg voltages of centred pulses: phase voltages less floor((max + min) / 2); lifted to where the pulses lie if
     /// the hexagon has a `lift`.
-    pub centred: Phases<'b, 3>,
+    pub legs: Phases<'b, 3>,
+    /// Whether they are lifted.
+    pub is_lifted: bool,
     /// Whether the voltage was outside.
     pub cut: Flag<'b>,
     /// max - min of the phase voltages, at most the bus.
@@ -100,8 +102,10 @@ impl<'b> Hexagon<'b> {
         u_unsat: Phases<'b>,
     ) -> Limited<'b> {
         let bus = self.bus.volts;
-        let doc = "Spread of the phase voltages; above the bus voltage the limit acts.";
-        l.b.stage("find_saturation", &[doc]);
+        let mut doc = vec!["Spread of the phase voltages; above the bus voltage the limit acts."];
+        let lowers = self.lift.and_then(CommonModeRule::doc_of_lift);
+        doc.extend(lowers);
+        l.b.stage("find_saturation", &doc);
         let u = u_unsat.with_c("u_unsat");
         let [high, low] = u.extremes(["u_max", "u_min"]);
         named! {
@@ -124,25 +128,29 @@ impl<'b> Hexagon<'b> {
             u.map(|u| u - middle_unsat)
         };
         named! {
-            let centred_unsat = centred;
             let saturated = spread.is_above(bus);
             let applied_spread = spread.min(bus);
         }
-        let (inside, inside_centred) = match priority {
+        // Pulses that lie lower are duties already.
+        let name = if lowers.is_some() { "duty" } else { "centred" };
+        let outside = centred.named(&format!("{name}_unsat"));
+        let (inside, inside_legs) = match priority {
             Priority::Angle => self.keep_angle(l, saturated, free),
             Priority::Nearest => self.take_nearest(l, saturated, free),
             Priority::Torque(emf) => self.keep_torque(l, saturated, free, emf),
         };
-        let [u_a, u_b, centred_a, centred_b, centred_c] = l.b.join([
+        let names = ["a", "b", "c"].map(|letter| format!("{name}_{letter}"));
+        let [u_a, u_b, leg_a, leg_b, leg_c] = l.b.join([
             ("u_a", inside.a(), u.a()),
             ("u_b", inside.b(), u.b()),
-            ("centred_a", inside_centred.a(), centred_unsat.a()),
-            ("centred_b", inside_centred.b(), centred_unsat.b()),
-            ("centred_c", inside_centred.c(), centred_unsat.c()),
+            (&*names[0], inside_legs.a(), outside.a()),
+            (&*names[1], inside_legs.b(), outside.b()),
+            (&*names[2], inside_legs.c(), outside.c()),
         ]);
         Limited {
             u: Phases([u_a, u_b]),
-            centred: Phases([centred_a, centred_b, centred_c]),
+            legs: Phases([leg_a, leg_b, leg_c]),
+            is_lifted: self.lift.is_some(),
             cut: saturated,
             spread: applied_spread,
         }
@@ -265,12 +273,13 @@ impl<'b> Hexagon<'b> {
             }
             return lifted_limited;
         }
+        // The clamp never acts: the legs lie within half of V_REACH about their middle. It tells the range.
         let extremes = legs.extremes(["highest_limited", "lowest_limited"]);
         named! {
             let lift_limited = rule.lift(l, None, extremes);
-            let lifted_limited = legs.map(|leg| (leg + lift_limited).clamp(0, rule.pulse_top(l)));
+            let duty_limited = legs.map(|leg| (leg + lift_limited).clamp(0, rule.pulse_top(l)));
         }
-        lifted_limited
+        duty_limited
     }
 
     /// Terminal voltages of the nearest point; added to the open stage.

@@ -25,7 +25,7 @@ pub struct Pulsed<'b> {
 
 impl<'b> Pulsed<'b> {
     /// The mean phase voltages of the compare values as written: `u`, the commanded ones, less what rounding to whole
-    /// counts takes. Of the bus, the nominal one counts here.
+    /// counts takes, in words of the nominal bus.
     pub fn written(&self, l: &Lowering<'b>, third: Coefficient, u: Phases<'b>) -> Phases<'b> {
         l.b.stage(
             "predict_rounding",
@@ -126,27 +126,30 @@ pub struct Modulator<'b> {
 }
 
 impl<'b> Modulator<'b> {
-    /// Three pulses of a limited voltage, which is lifted already where [`CommonModeRule::in_limit`] says so.
+    /// Three pulses of a limited voltage, which the limit may have lifted.
     pub fn three(
         &self,
         l: &Lowering<'b>,
         limited: &Limited<'b>,
         common_mode: CommonModeRule,
     ) -> Pulsed<'b> {
-        let doc = common_mode.doc();
+        let doc = if limited.is_lifted && !common_mode.is_centred() {
+            "Compare values of a centre-aligned timer, whole counts."
+        } else {
+            common_mode.doc()
+        };
         l.b.stage("modulate", &[doc]);
-        let is_lifted = common_mode.in_limit(self.bus, self.shifts.is_some());
-        let duty = if is_lifted.is_some() {
+        let duty = if limited.is_lifted {
             match self.shifts {
-                None => limited.centred,
-                Some(shifts) => (limited.centred + shifts).named("duty"),
+                None => limited.legs,
+                Some(shifts) => (limited.legs + shifts).named("duty"),
             }
         } else if common_mode.is_centred() {
-            Phases::each(|x| self.lifted_centred(l, limited.centred.0[x], x)).named("duty")
+            Phases::each(|x| self.lifted_centred(l, limited.legs.0[x], x)).named("duty")
         } else {
             named! {
                 let pulse = Phases::each(|x| {
-                    self.shifted(nominal_share(limited.centred.0[x], self.bus), x)
+                    self.shifted(nominal_share(limited.legs.0[x], self.bus), x)
                 });
             }
             common_mode.lifted(l, pulse).named("duty")
@@ -218,10 +221,10 @@ impl<'b> Modulator<'b> {
         named! {
             let half_bus = bus >> 1;
             let compare_three = Phases::each(|x| {
-                let duty = self.lifted_centred(l, limited.centred.0[x], x);
+                let duty = self.lifted_centred(l, limited.legs.0[x], x);
                 counts(l, duty, l.spec.inverter.readable_top())
             });
-            let terminal_three = limited.centred.map(|centred| (centred + half_bus).clamp(0, bus));
+            let terminal_three = limited.legs.map(|centred| (centred + half_bus).clamp(0, bus));
             let pairing = !commutating;
         }
         let doc = "Line voltage of the conducting pair, outside commutation: one leg pulsed, its partner low, the third off.";

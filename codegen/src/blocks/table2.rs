@@ -79,7 +79,7 @@ impl<'b> Table2<'b> {
         let (limited, pairing) = self.limit(l, priority, u, reach);
         let doc = "Neighbouring three-phase vectors: two legs high, then one.";
         l.b.stage("share_three", &[doc]);
-        let three = of_three_phases(l, limited.centred);
+        let three = of_three_phases(l, limited.legs);
         named! {
             // Wider intervals come from the plane of the pairs alone.
             let v_three = limited.u.map(|u| within_bus(u, reach.volts));
@@ -89,7 +89,7 @@ impl<'b> Table2<'b> {
         l.b.guarded_stage("share_pairs", pairing, false, &[doc]);
         named! {
             let v_pair = Phases::<2>::each(|x| {
-                self.third * (limited.centred.0[x] - limited.centred.0[x + 1])
+                self.third * (limited.legs.0[x] - limited.legs.0[x + 1])
             });
         }
         let pairs = of_pairs(l, v_pair);

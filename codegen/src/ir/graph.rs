@@ -269,7 +269,8 @@ impl Function {
     /// each of them by 2/3 limit (max and min are at most `limit` apart, and two of the three share
     /// a sign), max + min, which is minus the middle one, by 1/3 limit, and each less floor((max +
     /// min)/2), perhaps plus a constant, by 1/2 limit: the largest is ceil(spread/2) above it and
-    /// the smallest floor(spread/2) below. Each less max is in [-limit, 0], each less min in [0, limit].
+    /// the smallest floor(spread/2) below. Each less max is in [-limit, 0], each less
+    /// min in [0, limit]; of the least of two such lifts each leg has the least of both.
     pub fn interval_where_not(&self, condition: Value, value: Value) -> Interval {
         let own = self.node(value).interval;
         let Some((limit, legs, high, low)) = self.spread_condition(condition) else {

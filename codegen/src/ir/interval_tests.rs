@@ -375,7 +375,7 @@ fn flags_of_several_comparisons_bound_what_all_of_them_compare() {
 }
 
 /// `limit < max(a, b, c) - min(a, b, c)` for c = -(a + b), and its bounds on each of them, their
-/// middle and each less the middle.
+/// middle, each less the middle, and each lifted by a number less middle, max or min. Other lifts have no bounds of it.
 #[test]
 fn a_spread_bounds_its_legs_and_their_middle() {
     let range = Interval::symmetric(15);
@@ -412,6 +412,10 @@ fn a_spread_bounds_its_legs_and_their_middle() {
             let _ = (a + (9 - high)).named("below_a");
             let _ = (c + (4 - low)).named("above_c");
             let _ = (b + (7 - middle).min(9 - high)).named("least_b");
+            let _ = (b + (a - high)).named("lift_of_a_leg");
+            let _ = (b + (7 - middle).min(a)).named("least_with_a_leg");
+            let _ = (b + (7 - middle).max(9 - high)).named("greatest_lift");
+            let _ = ((b + 1) + (9 - high)).named("no_leg");
         });
         let step = &program.step;
         let all: Vec<Vec<i64>> = choices(&[range, range])
@@ -429,6 +433,16 @@ fn a_spread_bounds_its_legs_and_their_middle() {
                 "{name} in {stated}, but takes {seen}: {limit}"
             );
             *tight += i32::from(stated.low == seen.low || stated.high == seen.high);
+        }
+        for name in [
+            "lift_of_a_leg",
+            "least_with_a_leg",
+            "greatest_lift",
+            "no_leg",
+        ] {
+            let value = value_named(step, name);
+            let own = step.node(value).interval;
+            assert_eq!(step.interval_where_not(holds, value), own, "{name}");
         }
     }
     assert!(tight.iter().all(|&tight| tight > 0), "{names:?} {tight:?}");

@@ -73,7 +73,7 @@ const VARIANTS: [(&str, &str, Fields); 29] = [
         ],
     ),
     (
-        "pdcc.slew-rate",
+        "pdcc.slew-rate-and-over-speed",
         "pdcc:reference=quasi_square,emf=estimated,slew_rate=200 A/s",
         &[
             ("inverter", "hall_glitches", "3"),

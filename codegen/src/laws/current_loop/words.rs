@@ -167,7 +167,7 @@ impl<'b> CurrentLoop<'_, 'b> {
             pair: needs.commutation.then(|| self.commutation_rule()),
             i_prev: sees.then(|| self.current_words()),
             v_cmd: (needs_command && (needs.predicts() || sees)).then(|| {
-                let doc = "Limited voltage of the last step, applied in this period.";
+                let doc = "Voltage that the last step commanded, applied in this period.";
                 l.memories(["v_a_cmd", "v_b_cmd"], volts, doc)
             }),
             t_cmd: (is_delayed && needs.off_leg).then(|| self.terminal_words()),

@@ -60,7 +60,7 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         let hexagon = Hexagon {
             bus: common_mode.reach(l, front.bus),
             third: front.third,
-            // A pair needs the centred voltages themselves, a measured bus those before scaling.
+            // A pair needs the centred voltages themselves.
             lift: (common_mode.in_limit(front.bus, held.is_some())).filter(|_| !pair),
         };
         let limited = hexagon.limit(l, priority, u);

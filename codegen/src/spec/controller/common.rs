@@ -364,12 +364,12 @@ pub(crate) const DEAD_TIME_COMPENSATION: Rule = rule::choice::<bool>(
 /// The rule of the prediction of rounding.
 pub(crate) const ROUNDING_PREDICTION: Rule = rule::choice::<bool>("rounding_prediction", "on")
     .by_default(
-        "`on` with three pulsed legs and `delay: 1`, where a count of the PWM timer moves the current by more than 0.5 % of `rated_current` in a control period (v_bus Ts/(timer_period L)), else `off`",
-        &[("on", "a count of the timer moves the current")],
+        "`on` with three pulsed legs and `delay: 1`, where the voltage of a count of the PWM timer moves the current by more than 0.5 % of `rated_current` in a control period (v_bus Ts/(timer_period L)), else `off`",
+        &[("on", "the voltage of a timer count moves the current by more than 0.5 % of the rated one")],
     )
     .about("Whether the prediction knows the voltage of the compare values as written: the commanded one, rounded to whole counts of the timer");
 
-/// Change of the current in a control period by a count of the PWM timer, over the rated current. Above it the rounding
+/// Change of the current in a control period by the voltage of a count of the PWM timer, over the rated current. Above it the rounding
 /// of compare values is predicted by default; below it, unpredicted, it makes the torque ripple by about a percent.
 const FELT_COUNT: f64 = 0.005;
 

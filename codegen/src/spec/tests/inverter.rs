@@ -705,7 +705,7 @@ fn a_dead_time_that_is_felt_is_compensated_by_default() {
     }
 }
 
-/// The motor's current moves by 0.101 A, 0.51 % of the rated one, in a count of a timer of 4.3 MHz.
+/// The voltage of a count of a timer of 4.3 MHz moves the motor's current by 0.101 A, 0.51 % of the rated one.
 #[test]
 fn a_rounding_that_is_felt_is_predicted_by_default() {
     let predicts = |clock: &str, controller: &str| {
