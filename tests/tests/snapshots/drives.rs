@@ -21,7 +21,7 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 29] = [
+const VARIANTS: [(&str, &str, Fields); 28] = [
     ("pdcc.pair", "pdcc:modulation=pair", &[]),
     ("pdcc.table2", "pdcc:modulation=table2,zero=pair_low", &[]),
     ("pi-pwm.table2", "pi-pwm:modulation=table2", &[]),
@@ -43,11 +43,6 @@ const VARIANTS: [(&str, &str, Fields); 29] = [
     (
         "pdcc.word-16",
         "pdcc:reference=quasi_square,word=16,saturation=keep_angle",
-        &[],
-    ),
-    (
-        "pdcc.observer",
-        "pdcc:emf=observer,reference=proportional,hall_capture=timer",
         &[],
     ),
     (
