@@ -14,8 +14,8 @@ use crate::spec::LimitRule;
 pub struct Limited<'b> {
     /// Phase voltages a, b.
     pub u: Phases<'b>,
-    /// Leg voltages of centred pulses: phase voltages less floor((max + min) / 2); lifted to where the pulses lie if
-    /// the hexagon has a `lift`.
+    /// Leg voltages: phase voltages less floor((max + min) / 2), or lifted to where their pulses lie if the hexagon
+    /// has a `lift`.
     pub legs: Phases<'b, 3>,
     /// Whether they are lifted.
     pub is_lifted: bool,
@@ -119,7 +119,7 @@ impl<'b> Hexagon<'b> {
             extent,
             middle: middle_unsat,
         };
-        let centred = if let Some(rule) = self.lift {
+        let legs = if let Some(rule) = self.lift {
             named! {
                 let lift_unsat = rule.lift(l, Some(middle_unsat), [high, low]);
             }
@@ -133,7 +133,7 @@ impl<'b> Hexagon<'b> {
         }
         // Pulses that lie lower are duties already.
         let name = if lowers.is_some() { "duty" } else { "centred" };
-        let outside = centred.named(&format!("{name}_unsat"));
+        let outside = legs.named(&format!("{name}_unsat"));
         let (inside, inside_legs) = match priority {
             Priority::Angle => self.keep_angle(l, saturated, free),
             Priority::Nearest => self.take_nearest(l, saturated, free),

@@ -14,7 +14,7 @@ pub const LOW: i32 = 1;
 /// Leg state: both switches off.
 pub const OFF: i32 = 2;
 
-/// Three centred pulses.
+/// Three pulsed legs.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulsed<'b> {
     /// The command.
@@ -116,7 +116,7 @@ impl<'b> Command<'b> {
     }
 }
 
-/// Modulator of centred pulses.
+/// Modulator of pulses.
 #[derive(Clone, Copy, Debug)]
 pub struct Modulator<'b> {
     /// The bus.
