@@ -97,7 +97,8 @@ fn limits_hold_for_every_motor() {
             let mut bench = Bench::at(&limited, 1.0);
             bench.closed.controller().set_current(part * rated);
             bench.closed.run(300, &mut ());
-            let found = bench.bus_current(4 * bench.sector);
+            // A count of the timer moves the current of some by a hundredth: over few periods the mean is not settled.
+            let found = bench.bus_current(24 * bench.sector);
             let wanted = left(free, limits);
             assert!(
                 (found / wanted - 1.0).abs() < 0.03,
