@@ -19,27 +19,8 @@ pub const OFF: i32 = 2;
 pub struct Pulsed<'b> {
     /// The command.
     pub command: Command<'b>,
-    /// Duty of each leg before rounding, with half a count, words of the nominal bus.
-    duty: Phases<'b, 3>,
-}
-
-impl<'b> Pulsed<'b> {
-    /// The mean phase voltages of the compare values as written: `u`, the commanded ones, less what rounding to whole
-    /// counts takes, in words of the nominal bus.
-    pub fn written(&self, l: &Lowering<'b>, third: Coefficient, u: Phases<'b>) -> Phases<'b> {
-        l.b.stage(
-            "predict_rounding",
-            &[
-                "Voltage of the compare values as written: the prediction knows what rounding to whole timer counts changes.",
-            ],
-        );
-        named! {
-            let rest = self.duty.map(|duty| duty.remainder(l.scale.voltage_bits));
-            let rest_mean = third * rest.sum();
-            let u_written = Phases::each(|x| u.0[x] - rest.0[x] + rest_mean);
-        }
-        u_written
-    }
+    /// Its mean phase voltages, for the prediction.
+    pub u: Phases<'b>,
 }
 
 /// Compare values and leg states of phases a, b, c.
@@ -123,6 +104,8 @@ pub struct Modulator<'b> {
     pub bus: Bus<'b>,
     /// Dead-time compensation per leg, words of the nominal bus.
     pub shifts: Option<Phases<'b, 3>>,
+    /// 1/3, if the prediction knows what rounding to compare values changes.
+    pub rounding: Option<Coefficient>,
 }
 
 impl<'b> Modulator<'b> {
@@ -161,7 +144,13 @@ impl<'b> Modulator<'b> {
             compares: compare_pulsed,
             legs: Phases::each(|_| l.b.number(PULSED)),
         };
-        Pulsed { command, duty }
+        let written = self
+            .rounding
+            .map(|third| written(l, third, limited.u, duty));
+        Pulsed {
+            command,
+            u: written.unwrap_or(limited.u),
+        }
     }
 
     /// The duty of a centred voltage before rounding, with half a count, words of the nominal bus.
@@ -265,6 +254,28 @@ pub struct Pulses<'b> {
     pub command: Command<'b>,
     /// Terminal voltages; 0 of an off leg.
     pub terminals: Phases<'b, 3>,
+}
+
+/// The mean phase voltages of the compare values as written: `u`, the commanded ones, less what rounding of the duties,
+/// which have half a count, takes; in words of the nominal bus.
+fn written<'b>(
+    l: &Lowering<'b>,
+    third: Coefficient,
+    u: Phases<'b>,
+    duty: Phases<'b, 3>,
+) -> Phases<'b> {
+    l.b.stage(
+        "predict_rounding",
+        &[
+            "Voltage of the compare values as written: the prediction knows what rounding to whole timer counts changes.",
+        ],
+    );
+    named! {
+        let rest = duty.map(|duty| duty.remainder(l.scale.voltage_bits));
+        let rest_mean = third * rest.sum();
+        let u_written = Phases::each(|x| u.0[x] - rest.0[x] + rest_mean);
+    }
+    u_written
 }
 
 /// Half the timer period and half a count, by which centred voltages are lifted.

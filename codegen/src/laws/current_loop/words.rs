@@ -21,8 +21,8 @@ pub struct Needs {
     pub emf: EmfUse,
     /// Greatest magnitude of the law's own contribution to the folded words, words of voltage.
     pub memory: i64,
-    /// How far a voltage that is remembered may lie beyond the bus, words: what rounding to compare values changes.
-    pub rounding: i64,
+    /// Whether voltages are remembered as compare values make them, up to a count beyond the bus.
+    pub rounding: bool,
 }
 
 impl Needs {
@@ -125,7 +125,8 @@ impl<'b> CurrentLoop<'_, 'b> {
 
     /// Greatest magnitude of a remembered voltage, words.
     pub(super) fn volts_bound(&self) -> i64 {
-        self.l.bus_interval().high + self.needs.rounding
+        let count = i64::from(self.needs.rounding) << self.l.scale.voltage_bits;
+        self.l.bus_interval().high + count
     }
 
     /// Whether the law observes the error of the modelled EMF.

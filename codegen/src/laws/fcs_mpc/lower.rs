@@ -25,7 +25,7 @@ pub(super) fn lower(
                 off_leg: options.floating(),
                 emf: EmfUse::Deadbeat,
                 memory: 0,
-                rounding: 0,
+                rounding: false,
             },
         };
         apply_best(&step, options, set_point);

@@ -27,7 +27,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
                 off_leg: false,
                 emf: EmfUse::FeedForward,
                 memory: 0,
-                rounding: 0,
+                rounding: false,
             },
         };
         let front = step.front(set_point);
@@ -51,6 +51,7 @@ pub(super) fn lower(spec: &Spec, options: &PPwmSpec, design: &LoopDesign, scale:
         let turned = front.turned(l, limited.cut);
         let modulator = Modulator {
             bus: front.bus,
+            rounding: None,
             shifts: None,
         };
         let pulsed = modulator.three(l, &limited, common_mode);

@@ -18,6 +18,16 @@ enum LimitEmf<'b> {
     Known(Phases<'b>),
 }
 
+impl<'b> LimitEmf<'b> {
+    /// The EMF of phases a, b; added to the open stage.
+    fn of_phases(self, step: &CurrentLoop<'_, 'b>) -> Phases<'b> {
+        match self {
+            Self::Held(held) => step.held_emf(&held),
+            Self::Known(e) => e,
+        }
+    }
+}
+
 /// Lowers the controller at a scale.
 pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale: Scale) -> Lowered {
     lower_with(spec, scale, Gain::stiffness(design.k_di), |l, set_point| {
@@ -32,23 +42,14 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
                 off_leg: pair,
                 emf: EmfUse::Deadbeat,
                 memory: 0,
-                rounding: if options.rounding_prediction {
-                    1 << l.scale.voltage_bits
-                } else {
-                    0
-                },
+                rounding: options.rounding_prediction,
             },
         };
         let front = step.front(set_point);
         let Deadbeat { u, held } = step.deadbeat(&front, options.dead_time_compensation);
         let folded = front.held.map(LimitEmf::Held);
         let emf = folded.or(front.e.map(LimitEmf::Known));
-        let emf = emf.map(|emf| {
-            move || match emf {
-                LimitEmf::Held(held) => step.held_emf(&held),
-                LimitEmf::Known(e) => e,
-            }
-        });
+        let emf = emf.map(|emf| move || emf.of_phases(&step));
         let priority = Priority::of(options.saturation, emf);
         if let Some(table2) = front.table2(options.zero).filter(|_| is_table2) {
             let modulated = table2.modulate(l, priority, u);
@@ -69,18 +70,14 @@ pub(super) fn lower(spec: &Spec, options: &PdccSpec, design: &LoopDesign, scale:
         let spread = (!pair).then_some(limited.spread);
         let modulator = Modulator {
             bus: front.bus,
+            rounding: options.rounding_prediction.then_some(front.third),
             shifts: held
                 .map(|held| step.dead_time_shifts(front.reference, held, design.k_di, spread)),
         };
         let (command, u, applied) = match front.commutation {
             None => {
                 let pulsed = modulator.three(l, &limited, common_mode);
-                let u = if options.rounding_prediction {
-                    pulsed.written(l, front.third, limited.u)
-                } else {
-                    limited.u
-                };
-                (pulsed.command, u, None)
+                (pulsed.command, pulsed.u, None)
             }
             Some(commutation) => {
                 let flag = commutation.flag;

@@ -33,7 +33,7 @@ pub(super) fn lower(spec: &Spec, options: &PhccSpec, design: &LoopDesign, scale:
                     EmfUse::None
                 },
                 memory: 0,
-                rounding: 0,
+                rounding: false,
             },
         };
         // Tables of the vector's contribution to the next error include the hysteresis memory.

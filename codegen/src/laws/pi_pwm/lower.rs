@@ -60,7 +60,7 @@ pub(super) fn lower(
                 off_leg: false,
                 emf,
                 memory: 0,
-                rounding: 0,
+                rounding: false,
             },
         };
         let front = step.front(set_point);
@@ -156,6 +156,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         let spread = Some(limited.spread);
         let modulator = Modulator {
             bus: front.bus,
+            rounding: None,
             shifts: held
                 .map(|held| step.dead_time_shifts(front.reference, held, stiffness, spread)),
         };
@@ -258,6 +259,7 @@ impl<'l, 'b> Regulator<'l, 'b> {
         l.b.stage("modulate_pair", &[doc]);
         let modulator = Modulator {
             bus: front.bus,
+            rounding: None,
             shifts,
         };
         let pulses = modulator.pulse_pair(l, sign, line);
