@@ -83,7 +83,7 @@ const REFUSED: [(&str, &str, &str); 3] = [
 ];
 
 /// Values of independent options that the second option's value rules out: intervals have no pulses to shift, and the bus
-/// current of them is not computed; rounding is predicted of three pulses, and over a delay.
+/// current of them is not computed. Rounding is predicted for three pulsed legs, and with a delay.
 const APART: [[(&str, &str); 2]; 10] = [
     [("dead_time", "compensated"), ("modulation", "table2")],
     [

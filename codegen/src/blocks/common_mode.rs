@@ -54,8 +54,8 @@ impl CommonModeRule {
         self.policy == CommonMode::Centred
     }
 
-    /// The rule, where the voltage limit lifts the legs to where their pulses lie: on a fixed bus, and pulses that
-    /// are not centred only if nothing shifts them or lowers one of them behind the limit.
+    /// The rule, if the voltage limit itself lifts the legs to where their pulses lie; else that is left to the modulator.
+    /// It needs a fixed bus; and unless pulses are centred, no dead-time shift and no second leg that is lowered.
     pub fn in_limit(self, bus: Bus<'_>, shifted: bool) -> Option<Self> {
         let is_last = self.is_centred() || !shifted && self.second >= self.top;
         (bus.ratio.is_none() && is_last).then_some(self)

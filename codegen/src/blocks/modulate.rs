@@ -109,7 +109,7 @@ pub struct Modulator<'b> {
 }
 
 impl<'b> Modulator<'b> {
-    /// Three pulses of a limited voltage, which the limit may have lifted.
+    /// Three pulses of a limited voltage. Legs that the limit has not lifted are lifted here.
     pub fn three(
         &self,
         l: &Lowering<'b>,

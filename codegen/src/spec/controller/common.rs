@@ -369,8 +369,8 @@ pub(crate) const ROUNDING_PREDICTION: Rule = rule::choice::<bool>("rounding_pred
     )
     .about("Whether the prediction knows the voltage of the compare values as written: the commanded one, rounded to whole counts of the timer");
 
-/// Change of the current in a control period by the voltage of a count of the PWM timer, over the rated current. Above it the rounding
-/// of compare values is predicted by default; below it, unpredicted, it makes the torque ripple by about a percent.
+/// Change of the current in a control period by the voltage of a count of the PWM timer, over the rated current. Above it
+/// the rounding of compare values is predicted by default. Below it the torque ripples by about a percent without that.
 const FELT_COUNT: f64 = 0.005;
 
 /// Change of the current in a control period by the dead time, over the rated current. Above it the dead time is
@@ -448,6 +448,14 @@ pub(crate) struct Surroundings {
     pub rated_frequency: Option<f64>,
     /// Time constant of the filter of the speed, second; none with Hall sensors, or where it is not known.
     pub speed_filter: Option<f64>,
+}
+
+impl Surroundings {
+    /// Whether so many volt seconds move the current by more than a share of the rated one, where both are known.
+    fn moves_more(&self, volt_seconds: f64, share: f64) -> Option<bool> {
+        let moved = volt_seconds / self.inductance?;
+        Some(moved > share * self.rated_current.as_ref()?.0)
+    }
 }
 
 /// Least `acceleration_limit`, 10 rpm/s: the change in a period is still some words.
@@ -882,8 +890,7 @@ pub(crate) fn compensates_by_default(
 ) -> bool {
     let felt = || {
         let lost = f64::from(drive.pwm_per_control) * drive.v_bus? * drive.dead_time;
-        let moved = lost / drive.inductance?;
-        Some(moved > FELT_DEAD_TIME * drive.rated_current.as_ref()?.0)
+        drive.moves_more(lost, FELT_DEAD_TIME)
     };
     let always = common.reference == Reference::QuasiSquare || common.emf == EmfSource::Model;
     traits.pulses_three_legs && drive.dead_time > 0.0 && (always || felt().unwrap_or(false))
@@ -909,8 +916,7 @@ pub(crate) fn read_rounding_prediction(
     }
     let felt = || {
         let count = drive.v_bus? * drive.t_s? / f64::from(drive.timer_period?);
-        let moved = count / drive.inductance?;
-        Some(moved > FELT_COUNT * drive.rated_current.as_ref()?.0)
+        drive.moves_more(count, FELT_COUNT)
     };
     let stated = reader.switch(errors, option);
     stated.unwrap_or_else(|| felt().unwrap_or(false))
