@@ -198,18 +198,8 @@ fn current_sensors(spec: &Spec) -> String {
     };
     let phases = inverter.sensed_phases.phases().iter();
     let phases: Vec<&str> = phases.map(|phase| ["a", "b", "c"][*phase]).collect();
-    let delay = inverter.sampling_delay(spec.controller.common().delay);
-    let instant = if delay > 0.0 {
-        let delay = engineering(delay, "s");
-        let begin = if spec.controller.has_intervals() {
-            "beginning of the period"
-        } else {
-            "turning point of the timer"
-        };
-        format!(", sampled {delay} (half the dead time) behind the {begin}")
-    } else {
-        String::new()
-    };
+    let instant = spec.sampling_instant();
+    let instant = instant.map_or(String::new(), |instant| format!(", sampled {instant}"));
     let sensors = format!("Current sensors: {place} {}{instant}", phases.join(", "));
     let share = spec.reach_share();
     if share >= 1.0 {

@@ -127,7 +127,7 @@ pub(crate) const INVERTER: &[Rule] = &[
     quantity("aperture_time", &[D::Time], 0.0, 1e-4, "200 ns"),
     quantity("conversion_time", &[D::Time], 0.0, 1e-4, "400 ns"),
     integer("current_adcs", 1, 3, "2"),
-    quantity("sampling_lead", &[D::Time], 0.0, 1e-4, "500 ns"),
+    quantity("sampling_lead", &[D::Time], -1e-4, 1e-4, "500 ns"),
     quantity("current_sum_tolerance", &[D::Current], 1e-4, 2e4, "2 A"),
     integer("current_sum_samples", 0, 10_000, "20"),
     quantity("minimum_low_time", &[D::Time], 0.0, 1e-3, "2 us"),

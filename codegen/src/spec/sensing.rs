@@ -2,6 +2,7 @@
 
 use super::words::words;
 use super::{CommonMode, InverterSpec, Spec};
+use crate::diagnostics::engineering;
 
 words! {
     /// Which phases have a current sensor.
@@ -68,7 +69,7 @@ pub struct SensingTimes {
     pub conversion: f64,
     /// Converters that sample different phases at once.
     pub converters: u32,
-    /// Time from the sampling instant to the timer's turning point.
+    /// Time from the sampling instant to the timer's turning point; negative behind it.
     pub lead: f64,
 }
 
@@ -128,7 +129,7 @@ impl InverterSpec {
     }
 
     /// Time from the turning point at which a control period begins to the sampling instant, second; negative
-    /// before it. Each edge of a leg comes late by the dead time or not at all, whichever way its current flows,
+    /// before it. With sensors in the low legs it is stated, or by rule as here where it is felt. Each edge of a leg comes late by the dead time or not at all, whichever way its current flows,
     /// so the middle of its pulses, at which the sample is the mean of the current, comes half of it late. A drive
     /// without computation delay samples before: its command acts from the turning point on.
     pub fn sampling_delay(&self, delay: u32) -> f64 {
@@ -196,6 +197,24 @@ impl InverterSpec {
 }
 
 impl Spec {
+    /// When currents are sampled, for people; none at the turning point of the timer, with which the period begins.
+    pub fn sampling_instant(&self) -> Option<String> {
+        let delay = self.inverter.sampling_delay(self.controller.common().delay);
+        if delay == 0.0 {
+            return None;
+        }
+        let time = engineering(delay.abs(), "s");
+        let is_half = delay == self.inverter.dead_time / 2.0;
+        let half = if is_half { " (half the dead time)" } else { "" };
+        let side = if delay > 0.0 { "behind" } else { "before" };
+        let begin = if self.controller.has_intervals() {
+            "beginning of the period"
+        } else {
+            "turning point of the timer"
+        };
+        Some(format!("{time}{half} {side} the {begin}"))
+    }
+
     /// Largest difference of two legs' compare values; without a common mode one of them is low throughout.
     pub fn reach(&self) -> u32 {
         match self.controller.common_mode() {

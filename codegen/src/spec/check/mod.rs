@@ -49,7 +49,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
     inverter_reader.check_fields(&mut errors, |field, errors| {
         fields::misplaced("inverter", field, errors)
     });
-    let inverter = inverter::read(&inverter_reader, &mut errors);
+    let mut inverter = inverter::read(&inverter_reader, &mut errors);
     let of_halls = ["hall_glitches", "minimum_speed"];
     angle::refuse_halls(&inverter_reader, motor.rotor, &of_halls, &mut errors);
     let whole_controller = ast.whole_controller();
@@ -58,6 +58,13 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
         fallback,
         (&motor, &inverter),
         in_error((&motor_reader, &motor), (&inverter_reader, &inverter)),
+        &mut errors,
+    );
+    sensing::place_instant(
+        &inverter_reader,
+        &mut inverter,
+        &motor,
+        controller.as_ref(),
         &mut errors,
     );
 

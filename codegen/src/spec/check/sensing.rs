@@ -1,10 +1,12 @@
 //! The current sensors: where they are, and what a count of each is worth.
 
-use crate::diagnostics::Collector;
+use super::inverter::Inverter;
+use super::motor::Motor;
 use crate::diagnostics::catalogue::{self, Part};
+use crate::diagnostics::{Collector, engineering};
 use crate::spec::reader::Reader;
 use crate::spec::sensing::{IN_PHASE, LOW_SIDE, SensingTimes};
-use crate::spec::{CurrentSensing, SensedPhases};
+use crate::spec::{ControllerSpec, CurrentSensing, SensedPhases};
 
 /// What was read of the sensors' place.
 #[derive(Clone, Debug)]
@@ -46,6 +48,47 @@ impl Sensing {
 
 const SENSED_PHASES: &str = "sensed_phases";
 
+const LEAD: &str = "sampling_lead";
+
+/// Share of the rated current from which on it is felt that currents are sampled before the middle of pulses which the
+/// dead time delays.
+const FELT_DELAY: f64 = 0.005;
+
+/// The sampling instant of sensors in the low legs, which depends on motor and controller. Half the dead time behind the
+/// turning point, in the middle of the pulses, where the current moves too far until then; the timer's update makes no
+/// such trigger, so it is at the turning point elsewhere. A command without computation delay acts from there on.
+pub(super) fn place_instant(
+    reader: &Reader,
+    inverter: &mut Inverter,
+    motor: &Motor,
+    controller: Option<&ControllerSpec>,
+    errors: &mut Collector,
+) -> Option<()> {
+    let delay = controller?.common().delay;
+    let half = inverter.dead_time.as_ref()?.si / 2.0;
+    let CurrentSensing::LowSide(times) = inverter.sensing.place.as_mut()? else {
+        return None;
+    };
+    if let Some(field) = reader.field(LEAD) {
+        if delay == 0 && times.lead < 0.0 {
+            errors.push(catalogue::out_of_limits(
+                &field.location,
+                LEAD,
+                &engineering(times.lead, "s"),
+                "0 s (with `delay = 0` the command acts from the turning point on)",
+                "100 us",
+            ));
+        }
+        return None;
+    }
+    let emf = motor.emf_constant? * motor.rated_speed.as_ref()?.si;
+    let moved = emf * half / motor.inductance?;
+    if delay > 0 && moved > FELT_DELAY * motor.rated_current.as_ref()?.si {
+        times.lead = -half;
+    }
+    Some(())
+}
+
 pub(super) fn read(reader: &Reader, errors: &mut Collector) -> Sensing {
     let phases = reader
         .choice(errors, SENSED_PHASES, &[])
@@ -83,13 +126,9 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
         ("aperture_time", "200 ns"),
         ("conversion_time", "400 ns"),
     ];
-    let [settling, aperture, conversion, lead] = [
-        "settling_time",
-        "aperture_time",
-        "conversion_time",
-        "sampling_lead",
-    ]
-    .map(|name| time(reader, errors, name));
+    let [settling, aperture, conversion, lead] =
+        ["settling_time", "aperture_time", "conversion_time", LEAD]
+            .map(|name| time(reader, errors, name));
     let converters = reader.integer(errors, "current_adcs");
     let places = [
         (
@@ -102,13 +141,7 @@ fn read_place(reader: &Reader, errors: &mut Collector) -> Option<CurrentSensing>
     let is_low = reader.word(errors, FIELD, &[(IN_PHASE, false), (LOW_SIDE, true)])?;
     if !is_low {
         let [settling, aperture, conversion] = NEEDED.map(|(name, _)| name);
-        let names = [
-            settling,
-            aperture,
-            conversion,
-            "current_adcs",
-            "sampling_lead",
-        ];
+        let names = [settling, aperture, conversion, "current_adcs", LEAD];
         reader.refuse_without(errors, "current_sensing: low_side", &names);
         return Some(CurrentSensing::InPhase);
     }

@@ -246,6 +246,52 @@ fn currents_are_sampled_in_the_middle_of_pulses_that_the_dead_time_delays() {
     assert!((with_lines(shunts).sampling_delay(1) + 100e-9).abs() < 1e-15);
 }
 
+/// 17.3 V of EMF in half of 600 ns move the current of 20 uH by 260 mA, that of 220 uH by 24 mA, where 100 mA are felt.
+#[test]
+fn shunts_are_read_behind_the_turning_point_where_the_dead_time_is_felt() {
+    let sensors = "adc_range = \"40 A\"\ncurrent_sensing = \"low_side\"\naperture_time = \"200 ns\"\n\
+         dead_time = \"600 ns\"\nsettling_time = \"1 us\"\nconversion_time = \"0 us\"";
+    let text = COMPLETE
+        .replace("current_sensing = \"in_phase\"\n", "")
+        .replace("adc_range = \"40 A\"", sensors);
+    let stiff = text.replace("0.22 mH", "20 uH");
+    let checked = |text: &str| {
+        let checked = parse_toml(text, "m.toml").and_then(|ast| check(&ast));
+        checked.map(|(spec, _)| spec)
+    };
+    let right = |text: &str| checked(text).expect("a right specification");
+    assert_eq!(right(&text).sampling_instant(), None);
+    let late = right(&stiff);
+    let told = "300 ns (half the dead time) behind the turning point of the timer";
+    assert_eq!(late.sampling_instant().as_deref(), Some(told));
+    // Less time to settle is needed before, and more behind.
+    let window = late.inverter.window().expect("a window");
+    assert!((window.before - 1.3e-6).abs() < 1e-12, "{window:?}");
+    assert!((window.after - 0.5e-6).abs() < 1e-12, "{window:?}");
+    let stated = |lead: &str| {
+        let lead = format!("dead_time = \"600 ns\"\nsampling_lead = \"{lead}\"");
+        stiff.replace("dead_time = \"600 ns\"", &lead)
+    };
+    assert_eq!(right(&stated("0 ns")).sampling_instant(), None);
+    let at_once = stiff.replace("kind = \"pdcc\"", "kind = \"pdcc\"\ndelay = 0");
+    assert_eq!(right(&at_once).sampling_instant(), None);
+    let [early, behind] = ["100 ns", "-100 ns"].map(|lead| right(&stated(lead)).sampling_instant());
+    assert_eq!(
+        early.as_deref(),
+        Some("100 ns before the turning point of the timer")
+    );
+    assert_eq!(
+        behind.as_deref(),
+        Some("100 ns behind the turning point of the timer")
+    );
+    let behind = stated("-100 ns").replace("kind = \"pdcc\"", "kind = \"pdcc\"\ndelay = 0");
+    let told = checked(&behind)
+        .expect_err("a command that acts at once")
+        .to_string();
+    let named = "`sampling_lead`: -100 ns lies outside 0 s (with `delay = 0`";
+    assert!(told.contains(named), "{told}");
+}
+
 /// 10 bits a turn of the shaft are 64 periods of filter, 3.2 ms.
 #[test]
 fn the_filter_of_an_angle_sensor_limits_the_speed_loop() {
