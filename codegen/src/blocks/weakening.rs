@@ -8,12 +8,20 @@
 //! with s the proportional reference per ampere and share(alpha) the torque that the turned current still
 //! makes. So the current against the field is I sin(alpha) whatever the set-point, and the torque is that of
 //! the set-point until |i| reaches I; then it falls with share(alpha).
+//!
+//! Of a shape with harmonics the difference of two turned shapes has its current in pulses at the edges of one phase at a
+//! time. Their voltage is cut where that of an even current is not, and their torque cancels in the mean only. While
+//! current is left, this one flows in place of i:
+//!
+//! i = j s(theta) + d s'(theta),
+//!
+//! where s' is s turned by a quarter turn in the plane: across the EMF at each angle, so that d makes no torque at all.
 
 use super::emf::{ProportionalShape, lifted};
 use super::set_point::{SetPointWords, largest_set_point};
 use super::{Lowering, round_half_up};
 use crate::ir::{Exact, Expr, Flag, Interval, Memory, Phases, Real, named};
-use crate::spec::{MOST_TURN, share_of_torque};
+use crate::spec::{EmfShape, MOST_TURN, share_of_torque};
 
 /// Periods in which the angle rises from none to its greatest while current is left.
 const RISE: f64 = 128.0;
@@ -27,6 +35,10 @@ const SHARE_BITS: u32 = 30;
 const SLOPE_BITS: u32 = 26;
 /// Fraction bits of an angle in turns, and of its square.
 const ANGLE_BITS: u32 = 32;
+/// Current left, over the greatest one, from which on the current against the field is even.
+const EVEN: f64 = 0.25;
+/// Fraction bits of the part of the current that is.
+const EVEN_BITS: u32 = 15;
 
 /// The angle by which the reference is turned, and the greatest current.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +98,7 @@ impl<'b> FieldWeakening<'b> {
                 "The greatest current, turned against the field, less what the set-point does not ask of its part along the EMF.",
             ],
         );
-        let top = largest_set_point(l, self.top);
+        let largest = largest_set_point(l, self.top);
         named! {
             let pushes = set_point.is_at_least(0);
             let theta_weak = shape.theta.angle_add(pushes.sign(angle));
@@ -94,11 +106,11 @@ impl<'b> FieldWeakening<'b> {
         let turned = shape.at(l, "weak", theta_weak);
         named! {
             let share = share_at(l, angle);
-            let j_along = share.mul_floor(top, SHARE_BITS);
+            let j_along = share.mul_floor(largest, SHARE_BITS);
             let surplus = (j_along - set_point.abs()).max(0);
         }
         let ([top, surplus_lifted], shift) =
-            lifted([("j_largest_lifted", top), ("surplus_lifted", surplus)]);
+            lifted([("j_largest_lifted", largest), ("surplus_lifted", surplus)]);
         named! {
             let turned = turned.zip(shape.unit, |turned, unit| {
                 top.mul_floor(turned, shift) - surplus_lifted.mul_floor(unit, shift)
@@ -108,6 +120,14 @@ impl<'b> FieldWeakening<'b> {
         let quick = l.number("weakening_step", step(), doc);
         named! {
             let j_weak = turned.map(|turned| pushes.sign(turned));
+        }
+        let j_weak = if l.spec.motor.emf_shape == EmfShape::Sinusoidal {
+            j_weak
+        } else {
+            let left = [surplus, largest - set_point.abs()];
+            self.evened(l, shape, [along, j_weak], left)
+        };
+        named! {
             let slow = quick >> SLOWER;
             let rise_weak = surplus.is_above(0).choose(quick, slow);
             let fall_weak = surplus.is_above(0).choose(slow, quick);
@@ -124,6 +144,44 @@ impl<'b> FieldWeakening<'b> {
             fall,
         };
         (Phases([a, b]), weakened)
+    }
+
+    /// The turned reference, evened as far as current is left: what the set-point leaves of the turned current's torque,
+    /// and of the current. Added to the open stage.
+    fn evened(
+        self,
+        l: &Lowering<'b>,
+        shape: &ProportionalShape<'b>,
+        [along, turned]: [Phases<'b>; 2],
+        [surplus, left]: [Expr<'b>; 2],
+    ) -> Phases<'b> {
+        let top = self.top as f64;
+        let against = top / (3f64.sqrt() * turn_word(MOST_TURN) as f64);
+        let doc = "Current against the field at an angle, over sqrt(3): the greatest one at the greatest angle.";
+        let k_against = l.coefficient("k_against", against, 32, doc, &format!("{against:.6}"));
+        let even = f64::from(EVEN_BITS).exp2() / (EVEN * top);
+        let doc = "Part of the reference that is even, over the current left, 15 fraction bits.";
+        let k_even = l.coefficient("k_even", even, 32, doc, &format!("{even:.6}"));
+        let doc = "All of the reference, 15 fraction bits.";
+        let all = l.number("even_most", 1 << EVEN_BITS, doc);
+        named! {
+            // Half the current left is less than its part by sqrt(3).
+            let against = (k_against * self.angle.read()).min(left >> 1);
+            let even = (k_even * surplus).min(all);
+        }
+        let ([against], shift) = lifted([("against_lifted", against)]);
+        named! {
+            let j_most = largest_set_point(l, self.top) << 1;
+            let across = shape.unit.map(|unit| against.mul_floor(unit, shift));
+            let j_even = Phases([
+                along.a() - (across.a() + (across.b() << 1)),
+                along.b() + ((across.a() << 1) + across.b()),
+            ]);
+            let j_evened = turned.zip(j_even, |turned, even_now| {
+                (turned + (even_now - turned).mul_floor(even, EVEN_BITS)).clamp(-j_most, j_most)
+            });
+        }
+        j_evened
     }
 }
 

@@ -38,6 +38,8 @@ const RADIANS: f64 = TAU / 4_294_967_296.0;
 const MOST_TURN: f64 = 75.0 / 360.0;
 /// Its change in a period.
 const WEAKENING_STEP: f64 = MOST_TURN / 128.0;
+/// Current left, over the greatest one, from which on a reference that is turned is even.
+const EVEN: f64 = 0.25;
 
 /// Exact leg commands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,6 +240,14 @@ impl Ideal {
         let surplus = (self.max_current * share - current.abs()).max(0.0);
         let turned = self.proportional(theta + sign * TAU * turn);
         let i_ref = (turned * self.max_current - shape * surplus) * sign;
+        let i_ref = if self.shape == EmfShape::Sinusoidal {
+            i_ref
+        } else {
+            let against = 3f64.sqrt() / 2.0 * (self.max_current - current.abs());
+            let against = against.min(self.max_current * turn / MOST_TURN);
+            let even = shape * current + Vector2::new(-shape.y, shape.x) * against;
+            i_ref.lerp(&even, (surplus / (EVEN * self.max_current)).min(1.0))
+        };
         let slow = WEAKENING_STEP / 4.0;
         let changes = if surplus > 0.0 {
             [WEAKENING_STEP, slow]

@@ -3,8 +3,10 @@
 use super::constants::Constants;
 use super::scale::Scale;
 use crate::exact::{
-    Coefficient, Shift, Word, both, either, floor_shift, greater, pow2, round_half_up, within, word,
+    Coefficient, Shift, Word, both, either, floor_shift, greater, lesser, pow2, round_half_up,
+    within, word,
 };
+use crate::spec::EmfShapeKind;
 use crate::{Error, Spec};
 
 /// Greatest angle of the reference, turns.
@@ -15,6 +17,9 @@ const RISE: f64 = 128.0;
 const SHARE_BITS: u32 = 30;
 /// Fraction bits of its slope.
 const SLOPE_BITS: u32 = 26;
+/// Current left over the greatest from which on the reference is even, and fraction bits of the part that is.
+const EVEN: f64 = 0.25;
+const EVEN_BITS: u32 = 15;
 
 /// Constants of the field weakening.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +33,16 @@ pub struct FieldWeakening<W> {
     square: Shift,
     loss: Shift,
     share: Shift,
+    /// Of a shape with harmonics.
+    even: Option<Even<W>>,
+}
+
+/// Constants of an even current against the field.
+#[derive(Clone, Copy, Debug)]
+struct Even<W> {
+    k_against: Coefficient<W>,
+    k_even: Coefficient<W>,
+    part: Shift,
 }
 
 impl<W: Word> FieldWeakening<W> {
@@ -37,8 +52,21 @@ impl<W: Word> FieldWeakening<W> {
             return Ok(None);
         };
         let turn = |turns: f64| round_half_up(turns * pow2(32));
+        let top = k.k_set.mul(word::<W>(k.i_max_bits));
+        let even = if spec.motor.emf_shape == EmfShapeKind::Sinusoidal {
+            None
+        } else {
+            let most = f64::from(top.to_i32());
+            let against = most / (3f64.sqrt() * turn(MOST_TURN));
+            let part = pow2(EVEN_BITS as i32) / (EVEN * most);
+            Some(Even {
+                k_against: scale.coefficient("k_against", against)?,
+                k_even: scale.coefficient("k_even", part)?,
+                part: Shift::new(EVEN_BITS),
+            })
+        };
         Ok(Some(Self {
-            top: k.k_set.mul(word(k.i_max_bits)),
+            top,
             most: turn(MOST_TURN),
             step: turn(MOST_TURN / RISE),
             slope: round_half_up(square * pow2(SLOPE_BITS as i32)),
@@ -46,6 +74,7 @@ impl<W: Word> FieldWeakening<W> {
             square: Shift::new(32),
             loss: Shift::new(32 + SLOPE_BITS - SHARE_BITS),
             share: Shift::new(SHARE_BITS),
+            even,
         }))
     }
 
@@ -75,9 +104,29 @@ impl<W: Word> FieldWeakening<W> {
             k.shape_product.floor_product(turned[x], self.top)
                 - k.shape_product.floor_product(shape[x], surplus)
         });
+        let turned = turned.map(|turned| either(pushes, turned, -turned));
+        let left = self.top - either(pushes, j, -j);
+        let reference = match &self.even {
+            Some(even) => {
+                let against = even.k_against.mul(angle);
+                let half = floor_shift(left, 1);
+                let against = lesser(against, half);
+                let across = both(|x| k.shape_product.floor_product(shape[x], against));
+                let [a, b] = across;
+                let smooth = [along[0] - (a + b + b), along[1] + (a + a + b)];
+                let part = within(even.k_even.mul(surplus), 0.0, pow2(EVEN_BITS as i32));
+                let most = self.top + self.top;
+                both(|x| {
+                    let apart = smooth[x] - turned[x];
+                    let evened = turned[x] + even.part.floor_product(apart, part);
+                    within(evened, -most, most)
+                })
+            }
+            None => turned,
+        };
         let slow = floor_shift(step, 2);
         (
-            turned.map(|turned| either(pushes, turned, -turned)),
+            reference,
             if surplus > 0.0 {
                 [step, slow]
             } else {
