@@ -1,7 +1,7 @@
 /* Runtime of hexagen's drives, off the normal path: see hexagen.h. */
 #include "hexagen.h"
 
-#if HEXAGEN_ABI != 6
+#if HEXAGEN_ABI != 7
 #error "hexagen.c and hexagen.h are of different versions of hexagen: take both from one."
 #endif
 
@@ -450,6 +450,29 @@ hexagen_leg hexagen_rest(hexagen_supervisor *supervisor, const hexagen_limits *l
     legs = hexagen_all_legs(leg);
     hexagen_follow_legs(supervisor, limits, &legs);
     return leg;
+}
+
+void hexagen_keep(volatile hexagen_supervisor *kept, const hexagen_supervisor *supervisor)
+{
+    kept->mode = supervisor->mode;
+    kept->fault = supervisor->fault;
+    kept->countdown = supervisor->countdown;
+    kept->hall_prev = supervisor->hall_prev;
+    kept->hall_gap = supervisor->hall_gap;
+    kept->hall_glitches = supervisor->hall_glitches;
+    kept->stall_count = supervisor->stall_count;
+    kept->sum[0] = supervisor->sum[0];
+    kept->sum[1] = supervisor->sum[1];
+    kept->sum[2] = supervisor->sum[2];
+    kept->offset[0] = supervisor->offset[0];
+    kept->offset[1] = supervisor->offset[1];
+    kept->offset[2] = supervisor->offset[2];
+    kept->sum_count = supervisor->sum_count;
+    kept->unread = supervisor->unread;
+    kept->turn_hall = supervisor->turn_hall;
+    kept->turn_age = supervisor->turn_age;
+    kept->turn_interval = supervisor->turn_interval;
+    kept->turn_direction = supervisor->turn_direction;
 }
 
 /**

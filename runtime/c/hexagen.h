@@ -23,7 +23,7 @@ extern "C" {
 #endif
 
 /** Version of this interface. Drives refuse to compile with a header of another version. */
-#define HEXAGEN_ABI 6
+#define HEXAGEN_ABI 7
 
 /** A function off the normal path, not to be inlined into it. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -1068,6 +1068,13 @@ HEXAGEN_COLD hexagen_unfit hexagen_examine(hexagen_supervisor *supervisor,
  */
 HEXAGEN_COLD hexagen_leg hexagen_rest(hexagen_supervisor *supervisor,
     const hexagen_limits *limits, const hexagen_sample *sample, hexagen_fault fault);
+
+/**
+ * Keeps the supervisor in the record of a trip. Word by word: a library copies a block of any length
+ * and alignment, whose longest path is several times as long.
+ */
+HEXAGEN_COLD void hexagen_keep(
+    volatile hexagen_supervisor *kept, const hexagen_supervisor *supervisor);
 
 /**
  * Clears a trip; keeps calibrated offsets. False, without effect, during calibration and

@@ -56,7 +56,7 @@ pub(crate) const MOTOR: &[Rule] = &[
     Rule::of("emf_orders", Kind::Integers, "[5, 7]"),
     quantity("emf_amplitudes", &[D::Ratio], -1.0, 1.0, "[4 %, -2 %]"),
     quantity("emf_phases", &[D::Angle], -360.0, 360.0, "[0 deg, 10 deg]"),
-    plain("emf_samples", -1e5, 1e5, "[0.0, 1.3, 2.4]"),
+    plain("emf_samples", -1e5, 1e5, "[0.0, 1.3, 2.4, …]"),
     quantity("emf_samples_speed", &[D::Speed], RPM, 3e5 * RPM, "1000 rpm"),
     quantity("rated_current", &[D::Current], 0.01, 1e4, "20 A peak"),
     quantity("rated_torque", &[D::Torque], 1e-5, 1e5, "3.3 Nm"),

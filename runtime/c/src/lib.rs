@@ -11,4 +11,4 @@ pub const SOURCE: &str = include_str!("../hexagen.c");
 pub const FILES: [(&str, &str); 2] = [("hexagen.h", HEADER), ("hexagen.c", SOURCE)];
 
 /// `HEXAGEN_ABI` of the header, which emitted drives check.
-pub const ABI: u32 = 6;
+pub const ABI: u32 = 7;

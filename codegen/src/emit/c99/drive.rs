@@ -290,11 +290,13 @@ impl Drive<'_> {
 
     /// The function that keeps the period of a trip.
     fn keep_trip(&self) -> String {
-        let mut kept = vec![
-            "sample = *sample".to_owned(),
-            "supervisor = drive->supervisor".to_owned(),
-            "state = drive->state".to_owned(),
-        ];
+        let mut kept = vec!["sample = *sample".to_owned()];
+        // Word by word, as `hexagen_keep` does it.
+        let state = self.program.states.iter().map(|word| {
+            let name = self.names.local(&word.name);
+            format!("state.{name} = drive->state.{name}")
+        });
+        kept.extend(state);
         let single = SINGLE.into_iter();
         let single = single.filter(|(demand, _)| self.program.param(*demand).is_some());
         kept.extend(single.map(|(_, name)| format!("{name} = drive->{name}")));
@@ -303,7 +305,7 @@ impl Drive<'_> {
                 [0, 1].map(|word| format!("bus[{word}] = hexagen_bus_words(&drive->bus)[{word}]")),
             );
         }
-        let mut body = String::new();
+        let mut body = lines(&["hexagen_keep(&drive->trip.supervisor, &drive->supervisor);"]);
         for kept in kept {
             let _ = writeln!(body, "{INDENT}drive->trip.{kept};");
         }

@@ -19,6 +19,12 @@ const EMF_SHAPES: [(&str, &str); 2] = [
     ),
 ];
 
+/// Fields with the data of a shape, and that shape.
+const SHAPES_OF_DATA: [(&str, &[(&str, &str)]); 2] = [
+    ("emf_samples", &[("samples", "those of `emf_samples`")]),
+    ("emf_orders", &[("harmonics", "those of `emf_orders`")]),
+];
+
 /// The motor as far as it could be read.
 pub(super) struct Motor<'a> {
     pub description: String,
@@ -48,7 +54,12 @@ pub(super) struct Motor<'a> {
 pub(super) fn read<'a>(reader: &Reader<'a>, errors: &mut Collector) -> Motor<'a> {
     let names = ["resistance", "inductance", "rated_current", "rated_speed"];
     reader.require(errors, &names);
-    reader.require_choice(errors, "emf_shape", &EMF_SHAPES);
+    // Data of a shape say which it is.
+    let of_data = SHAPES_OF_DATA
+        .iter()
+        .find(|(field, _)| reader.field(field).is_some());
+    let shapes = of_data.map_or(&EMF_SHAPES[..], |(_, shape)| shape);
+    reader.require_choice(errors, "emf_shape", shapes);
     emf::require(reader, errors);
     reader.require_one_of(errors, ["pole_pairs", "poles"]);
     let pole_pairs = read_pole_pairs(reader, errors);

@@ -123,7 +123,7 @@ impl<'a> Reader<'a> {
         let contrary = contrary.map(|field| (field, field.value.to_string()));
         for name in names {
             if let Some(field) = self.field(name) {
-                let (at, given) = (&field.location, field.value.to_string());
+                let (at, given) = (&field.location, shortened(&field.value.to_string()));
                 let contrary = contrary.as_ref();
                 let contrary = contrary
                     .map(|(other, value)| (other.name.as_str(), value.as_str(), &other.location));
@@ -282,4 +282,15 @@ impl<'a> Reader<'a> {
             _ => None,
         }
     }
+}
+
+/// The beginning of a long value, as of a list of samples.
+fn shortened(value: &str) -> String {
+    const MOST: usize = 40;
+    if value.chars().count() <= MOST {
+        return value.to_owned();
+    }
+    let mut begin: String = value.chars().take(MOST).collect();
+    begin.push('…');
+    begin
 }

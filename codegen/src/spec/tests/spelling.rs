@@ -375,3 +375,28 @@ fn names_of_data_sheets_lead_to_the_field_and_its_number() {
         );
     }
 }
+
+#[test]
+fn data_of_a_shape_say_which_it_is_and_are_told_shortly() {
+    let samples =
+        "emf_samples = [0.0, 0.5, 1.0, 0.5, 0.0, -0.5, -1.0, -0.5, 0.0, 0.5, 1.0, 0.5, 0.0]";
+    let shape = "emf_shape = \"trapezoidal\"";
+    let told = changed(shape, samples);
+    assert!(
+        told.contains("`emf_shape = \"samples\"` (those of `emf_samples`)"),
+        "{told}"
+    );
+    assert!(!told.contains("sinusoidal"), "{told}");
+    let told = changed(shape, "emf_orders = [5, 7]\nemf_amplitudes = [0.1, 0.2]");
+    assert!(told.contains("`emf_shape = \"harmonics\"`"), "{told}");
+    let told = changed(shape, &format!("{shape}\n{samples}"));
+    let begin =
+        "`emf_samples`: [0.0, 0.5, 1.0, 0.5, 0.0, -0.5, -1.0, -0\u{2026} has an effect only with";
+    assert!(told.contains(begin), "{told}");
+    let one = "emf_shape = \"samples\"\nemf_samples = [\"0.5 V\", 1.0]";
+    let told = changed(shape, one);
+    assert!(
+        told.contains("but a plain number is expected; write `0.5`"),
+        "{told}"
+    );
+}

@@ -261,7 +261,7 @@ pub(super) const KNOWN: &[(D, &[&str])] = &[
     (D::Frequency, &["Hz", "kHz", "MHz", "GHz"]),
     (
         D::Speed,
-        &["rpm", "krpm", "min-1", "1/min", "r/min", "rps", "rad/s"],
+        &["rpm", "rad/s", "krpm", "min-1", "1/min", "r/min", "rps"],
     ),
     (
         D::EmfConstant,

@@ -74,7 +74,14 @@ fn within(value: f64, least: f64, most: f64, unit: &str) -> Result<f64, String> 
         } else {
             format!("at most {most}")
         };
-        Err(format!("{value:e} is out of range: {range}{unit}"))
+        // As it was written, but for a long row of zeros.
+        let is_short = value == 0.0 || (1e-4..1e7).contains(&value.abs());
+        let given = if is_short {
+            value.to_string()
+        } else {
+            format!("{value:e}")
+        };
+        Err(format!("{given} is out of range: {range}{unit}"))
     }
 }
 
@@ -296,6 +303,13 @@ mod tests {
         assert_eq!(
             torque("-1e300 Nm"),
             Err("-1e300 is out of range: at most 100000 Nm".to_owned())
+        );
+        let told = emf_shape("trapezoidal:200").expect_err("is too wide");
+        assert!(told.starts_with("200 is out of range: 1 to 179"), "{told}");
+        let told = speed("1500").expect_err("has no unit");
+        assert!(
+            told.ends_with("write it like `1500rpm` or `1500rad/s`"),
+            "{told}"
         );
         assert!(hall_error("1deg,2deg").is_err() && adc_offset("1A,2A,3A,4A").is_err());
         assert!(adc_scale("1,200").is_err() && counts("1 A").is_err());
