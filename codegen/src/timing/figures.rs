@@ -10,7 +10,7 @@ pub static CHIPS: [Chip; 3] = [
         clocks_of_waits: &[30e6, 60e6, 90e6, 120e6, 170e6],
         assumed: "code in flash, voltage range 1",
         compiler: "rustc 1.96.0",
-        in_c: Times::of([1.41, 1.33, 1.48, 1.52, 1.71, 1.76, 1.96]),
+        in_c: Times::of([1.41, 1.33, 1.48, 1.52, 1.63, 1.68, 1.89]),
         estimates: Times::of([
             Estimate::of(
                 [27.76, 1.196, 1.634, 1.843, 0.0000, 0.0000, 0.0000],
@@ -198,7 +198,7 @@ pub static CHIPS: [Chip; 3] = [
         clocks_of_waits: &[24e6, 48e6],
         assumed: "multiplier of one cycle, code in flash",
         compiler: "rustc 1.96.0",
-        in_c: Times::of([1.49, 1.49, 1.49, 1.49, 2.65, 2.44, 2.47]),
+        in_c: Times::of([1.49, 1.49, 1.49, 1.49, 1.89, 1.71, 1.78]),
         estimates: Times::of([
             Estimate::of(
                 [19.99, 0.0000, 1.208, 24.40, 11.60, 0.0000, 0.0000],
@@ -346,7 +346,7 @@ pub static CHIPS: [Chip; 3] = [
         clocks_of_waits: &[150e6],
         assumed: "core Hazard3, code in a bank of SRAM of its own",
         compiler: "rustc 1.96.0",
-        in_c: Times::of([1.3, 1.3, 1.35, 1.35, 3.01, 2.94, 2.94]),
+        in_c: Times::of([1.3, 1.3, 1.35, 1.35, 2.25, 2.29, 2.29]),
         estimates: Times::of([
             Estimate::of(
                 [55.94, 1.260, 1.222, 3.862, 2.825, 0.0000, 0.0000],
