@@ -218,7 +218,7 @@ pub fn unwanted_unit(at: &Location, field: &str, given: &str, plain: &str) -> Di
     Diagnostic::new(
         Code::UnwantedUnit,
         at,
-        format!("`{field}`: {given} has a unit, but a plain number is expected; write `{plain}`",),
+        format!("`{field}`: {given} has a unit, but a plain number is expected; write `{plain}`"),
     )
 }
 

@@ -503,7 +503,7 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
         let emit = ["--emit", language, "--out", &out];
         run(drive.iter().chain(&emit)).stderr
     };
-    let tight = "pdcc:target=cortex_m4,core_clock=64MHz";
+    let tight = "pdcc:target=cortex_m4,core_clock=62MHz";
     let told = of("c99", tight);
     assert!(told.contains("HX0614"), "{told}");
     assert!(told.contains("until control runs at"), "{told}");
@@ -519,7 +519,7 @@ fn c_that_may_not_fit_the_period_is_warned_of() {
     let out = tempfile::tempdir().expect("a temporary folder");
     let out = out.path().to_str().expect("a path");
     let told = run(["generate", "br2804-1700kv", "--emit", "c99", "--out", out]).stderr;
-    let longest = "in C the longest step may take up to 120 % of the control period (estimated) if the core is a Cortex-M4 at 170 MHz";
+    let longest = "in C the longest step may take up to 116 % of the control period (estimated) if the core is a Cortex-M4 at 170 MHz";
     assert!(told.contains(longest), "{told}");
 }
 

@@ -40,8 +40,8 @@ pub struct FieldWeakening<W> {
 /// Constants of an even current against the field.
 #[derive(Clone, Copy, Debug)]
 struct Even<W> {
-    k_against: Coefficient<W>,
-    k_even: Coefficient<W>,
+    against: Coefficient<W>,
+    weight: Coefficient<W>,
     part: Shift,
 }
 
@@ -60,8 +60,8 @@ impl<W: Word> FieldWeakening<W> {
             let against = most / (3f64.sqrt() * turn(MOST_TURN));
             let part = pow2(EVEN_BITS as i32) / (EVEN * most);
             Some(Even {
-                k_against: scale.coefficient("k_against", against)?,
-                k_even: scale.coefficient("k_even", part)?,
+                against: scale.coefficient("k_against", against)?,
+                weight: scale.coefficient("k_even", part)?,
                 part: Shift::new(EVEN_BITS),
             })
         };
@@ -108,13 +108,13 @@ impl<W: Word> FieldWeakening<W> {
         let left = self.top - either(pushes, j, -j);
         let reference = match &self.even {
             Some(even) => {
-                let against = even.k_against.mul(angle);
+                let against = even.against.mul(angle);
                 let half = floor_shift(left, 1);
                 let against = lesser(against, half);
                 let across = both(|x| k.shape_product.floor_product(shape[x], against));
                 let [a, b] = across;
                 let smooth = [along[0] - (a + b + b), along[1] + (a + a + b)];
-                let part = within(even.k_even.mul(surplus), 0.0, pow2(EVEN_BITS as i32));
+                let part = within(even.weight.mul(surplus), 0.0, pow2(EVEN_BITS as i32));
                 let most = self.top + self.top;
                 both(|x| {
                     let apart = smooth[x] - turned[x];
