@@ -21,28 +21,17 @@ const NAME: &str = "Hub";
 type Fields = &'static [(&'static str, &'static str, &'static str)];
 
 /// Variants of the paper's motor besides the defaults of each controller: name, options, fields.
-const VARIANTS: [(&str, &str, Fields); 28] = [
-    ("pdcc.pair", "pdcc:modulation=pair", &[]),
+const VARIANTS: [(&str, &str, Fields); 18] = [
     ("pdcc.table2", "pdcc:modulation=table2,zero=pair_low", &[]),
     ("pi-pwm.table2", "pi-pwm:modulation=table2", &[]),
     (
-        "pdcc.model-advance",
-        "pdcc:emf=model,advance=2,hall_capture=timer",
+        "pdcc.pair-model-and-advance",
+        "pdcc:modulation=pair,emf=model,advance=2,hall_capture=timer",
         &[],
     ),
     (
-        "pdcc.proportional",
-        "pdcc:emf=model,reference=proportional,saturation=nearest",
-        &[],
-    ),
-    (
-        "pdcc.delay-0",
-        "pdcc:reference=quasi_square,delay=0,discretisation=euler,saturation=keep_angle",
-        &[],
-    ),
-    (
-        "pdcc.word-16",
-        "pdcc:reference=quasi_square,word=16,saturation=keep_angle",
+        "pdcc.delay-0-and-word-16",
+        "pdcc:reference=quasi_square,delay=0,discretisation=euler,saturation=keep_angle,word=16",
         &[],
     ),
     (
@@ -51,60 +40,26 @@ const VARIANTS: [(&str, &str, Fields); 28] = [
         &[],
     ),
     (
-        "pdcc.speed-ramp",
+        "pdcc.speed-ramp-and-bus-current",
         "pdcc:reference=quasi_square,speed_loop=on,acceleration_limit=5000 rpm/s",
-        &[("motor", "inertia", "3 kg cm2")],
-    ),
-    (
-        "pdcc.fades",
-        "pdcc",
         &[
-            ("inverter", "v_bus", "measured"),
-            ("inverter", "bus_adc_bits", "12"),
-            ("inverter", "bus_adc_range", "80 V"),
-            ("inverter", "stall_timeout", "200 ms"),
-            ("inverter", "braking_fade", "4 V"),
-            ("inverter", "motoring_fade", "4 V"),
-        ],
-    ),
-    (
-        "pdcc.slew-rate-and-over-speed",
-        "pdcc:reference=quasi_square,emf=estimated,slew_rate=200 A/s",
-        &[
-            ("inverter", "hall_glitches", "3"),
-            ("inverter", "over_speed", "2600 rpm"),
-        ],
-    ),
-    (
-        "pdcc.bus-current",
-        "pdcc",
-        &[
+            ("motor", "inertia", "3 kg cm2"),
             ("inverter", "bus_current_limit", "10 A"),
             ("inverter", "return_current_limit", "5 A"),
         ],
     ),
     (
-        "pdcc.dead-time",
-        "pdcc:reference=quasi_square,emf=held,dead_time_compensation=on,rounding_prediction=on",
-        &[("inverter", "dead_time", "900 ns")],
+        "pdcc.dead-time-slew-rate-and-over-speed",
+        "pdcc:reference=quasi_square,emf=held,dead_time_compensation=on,rounding_prediction=on,slew_rate=200 A/s",
+        &[
+            ("inverter", "dead_time", "900 ns"),
+            ("inverter", "hall_glitches", "3"),
+            ("inverter", "over_speed", "2600 rpm"),
+        ],
     ),
     (
-        "pdcc.watched",
-        "pdcc:residual_timeout=5ms",
-        &[(
-            "motor",
-            "hall_angles",
-            "[-26 deg, 30 deg, 90 deg, 150 deg, 214 deg, 270 deg]",
-        )],
-    ),
-    (
-        "pdcc.field-weakening",
-        "pdcc:field_weakening=on",
-        &[("inverter", "bus_clamp", "56 V")],
-    ),
-    (
-        "pdcc.hall-learning",
-        "pdcc:hall_learning=on",
+        "pdcc.watched-and-hall-learning",
+        "pdcc:residual_timeout=5ms,hall_learning=on",
         &[(
             "motor",
             "hall_angles",
@@ -112,18 +67,22 @@ const VARIANTS: [(&str, &str, Fields); 28] = [
         )],
     ),
     (
-        "pdcc.torque-learning",
+        "pdcc.torque-learning-and-fades",
         "pdcc:torque_learning=on",
         &[
             ("inverter", "v_bus", "measured"),
             ("inverter", "bus_adc_bits", "12"),
             ("inverter", "bus_adc_range", "65 V"),
+            ("inverter", "stall_timeout", "200 ms"),
+            ("inverter", "braking_fade", "4 V"),
+            ("inverter", "motoring_fade", "4 V"),
         ],
     ),
     (
-        "pdcc.angle",
-        "pdcc",
+        "pdcc.angle-and-field-weakening",
+        "pdcc:field_weakening=on",
         &[
+            ("inverter", "bus_clamp", "56 V"),
             ("motor", "rotor", "angle"),
             ("motor", "angle_pole_pairs", "4"),
             ("motor", "angle_offset", "37 deg"),
@@ -142,17 +101,7 @@ const VARIANTS: [(&str, &str, Fields); 28] = [
         "fcs-mpc:off_leg=nominal,advance=1.5,delay=0,word=16",
         &[],
     ),
-    (
-        "fcs-mpc.held",
-        "fcs-mpc:candidates=three_phase,emf=held",
-        &[],
-    ),
     ("fcs-mpc.modulated", "fcs-mpc:modulated=on,emf=model", &[]),
-    (
-        "fcs-mpc.fewer-changes",
-        "fcs-mpc:candidates=three_phase,switching_weight=0.5A",
-        &[],
-    ),
     (
         "fcs-mpc.weighted",
         "fcs-mpc:emf=model,switching_weight=0.3A,torque_weight=2",
