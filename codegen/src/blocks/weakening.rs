@@ -171,14 +171,14 @@ impl<'b> FieldWeakening<'b> {
         }
         let ([against], shift) = lifted([("against_lifted", against)]);
         named! {
-            let j_most = largest_set_point(l, self.top) << 1;
+            let j_weak_most = largest_set_point(l, self.top) << 1;
             let across = shape.unit.map(|unit| against.mul_floor(unit, shift));
             let j_even = Phases([
                 along.a() - (across.a() + (across.b() << 1)),
                 along.b() + ((across.a() << 1) + across.b()),
             ]);
             let j_evened = turned.zip(j_even, |turned, even_now| {
-                (turned + (even_now - turned).mul_floor(even, EVEN_BITS)).clamp(-j_most, j_most)
+                (turned + (even_now - turned).mul_floor(even, EVEN_BITS)).clamp(-j_weak_most, j_weak_most)
             });
         }
         j_evened
