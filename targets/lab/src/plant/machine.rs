@@ -246,7 +246,7 @@ impl Plant {
     /// What a channel's sensor shows of its phase's current, and whether that is the current, not cut
     /// short by the next command: the one that flows at its instant, or the one at the turning point, which a
     /// controller wants. Where legs were off until then no current flows, and a sensor that has not settled
-    /// shows that, which is right.
+    /// shows that, which is right; so is what begins to flow until a later instant.
     fn read(&mut self, place: usize, next: AnyCommand) -> (f64, bool) {
         let (instant, phase) = (self.params.adc[place].instant, self.params.sensed[place]);
         let leg = if instant < 0.0 {
@@ -267,8 +267,9 @@ impl Plant {
         let until = instant + low_side.aperture;
         let timing = (self.params.timer_period, self.params.pwm_period());
         let is_held = adc::is_held(until, next, phase, timing);
-        let at_turning_point = self.leg(phase, 0.0).current;
-        let is_right = is_settled || seen == at_turning_point;
+        let before = self.leg(phase, 0.0);
+        let begins = before.gate == Gate::Off && before.current == 0.0;
+        let is_right = is_settled || seen == before.current || begins;
         (seen, is_right && is_held)
     }
 
