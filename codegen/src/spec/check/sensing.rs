@@ -65,7 +65,6 @@ pub(super) fn place_instant(
     errors: &mut Collector,
 ) -> Option<()> {
     let delay = controller?.common().delay;
-    let half = inverter.dead_time.as_ref()?.si / 2.0;
     let CurrentSensing::LowSide(times) = inverter.sensing.place.as_mut()? else {
         return None;
     };
@@ -81,6 +80,7 @@ pub(super) fn place_instant(
         }
         return None;
     }
+    let half = inverter.dead_time.as_ref()?.si / 2.0;
     let emf = motor.emf_constant? * motor.rated_speed.as_ref()?.si;
     let moved = emf * half / motor.inductance?;
     if delay > 0 && moved > FELT_DELAY * motor.rated_current.as_ref()?.si {
