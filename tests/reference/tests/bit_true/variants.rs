@@ -429,6 +429,8 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
     let rise_shift = (slowest / f64::from(inverter.rev_min)).log2().floor() + 2.0;
     let rise = 7.0 / 3.0 * (rise_shift.max(2.0) - 3.0).exp2();
     let peak = 1.6 * motor.torque_constant / motor.emf_constant;
+    // The greatest set-point word.
+    let top = inverter.max_current * gain / w * scale;
     let entries = [
         ("current", f_i),
         ("voltage", f_v),
@@ -462,6 +464,11 @@ pub fn formats(spec: &Spec) -> &'static [Format] {
         ("k_motoring", shift(inverter.max_current * gain / 70.0)),
         ("j_in_force", f_v + 1),
         ("k_weakening", 31),
+        (
+            "k_against",
+            shift(top / (3f64.sqrt() * 75.0 / 360.0 * 2f64.powi(32))),
+        ),
+        ("k_even", shift(2f64.powi(17) / top)),
         (
             "k_across",
             shift(0.02 * linkage * TAU / 2f64.powi(32) * scale),
