@@ -16,7 +16,7 @@ const CONTROLLER: &str = "pdcc";
 pub const SPEEDS: [u32; 4] = [5, 25, 60, 100];
 
 /// Both directions, motoring and braking: the signs of the speed and of the power.
-const QUADRANTS: [(i32, i32); 4] = [(1, 1), (1, -1), (-1, 1), (-1, -1)];
+pub const QUADRANTS: [(i32, i32); 4] = [(1, 1), (1, -1), (-1, 1), (-1, -1)];
 
 /// Greatest distance of the mean torque from the demand, percent.
 pub const TORQUE: f64 = 1.0;

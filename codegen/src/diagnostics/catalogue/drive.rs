@@ -440,14 +440,14 @@ pub fn unlikely_inertia(inertia: &Part, torque: f64, time: f64, likely: [f64; 2]
     )
 }
 
-/// A rotor that turns by `degrees` in a control period, at whose end a Hall edge is seen; `ripple`: of the torque, over its
+/// A rotor that turns by `degrees` in a control period, at whose end a Hall edge is seen; `ripple`: the greatest of the torque, over its
 /// mean.
 pub fn sampled_halls(period: &Part, degrees: f64, ripple: f64) -> Diagnostic {
     Diagnostic::new(
         Code::SampledHalls,
         &period.location,
         format!(
-            "`{}`: {}: at rated speed the rotor turns {degrees:.1} electrical degrees in a control period, and without a timer a Hall edge is seen up to a period late: the torque ripples by about {:.0} %; let a timer capture the edges (`hall_timer_clock`), or control more often",
+            "`{}`: {}: at rated speed the rotor turns {degrees:.1} electrical degrees in a control period, and without a timer a Hall edge is seen up to a period late: the torque ripples by up to {:.0} %; let a timer capture the edges (`hall_timer_clock`), or control more often",
             period.field,
             period.given,
             100.0 * ripple,

@@ -145,9 +145,13 @@ fn check_gain(ast: &SpecAst, inverter: &Inverter, warnings: &mut Vec<Diagnostic>
 
 /// Warns where Hall edges that are seen at samples only make the torque ripple.
 fn check_sampled_halls(period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
-    let Some(ripple) = spec.sampled_ripple().filter(|ripple| *ripple > MOST_RIPPLE) else {
+    let Some(ripple) = spec.sampled_ripple() else {
         return;
     };
+    // In full percent, as it is told: it is an estimate, good to a tenth.
+    if (100.0 * ripple).round() <= 100.0 * MOST_RIPPLE {
+        return;
+    }
     let degrees = spec.motor.rated_turn(spec.inverter.t_s);
     warnings.push(catalogue::sampled_halls(period, degrees, ripple));
 }

@@ -12,7 +12,7 @@ use panic_halt as _;
 hexagen::controller! {
     /// A motor of this board's class, with Hall sensors. All legs are pulsed, so that the shunts in
     /// the lower legs of phases a and b can be read in every period. Hall edges are seen at samples, so
-    /// that at the board's 12.5 kHz the torque would ripple by 4 % (HX0620).
+    /// that at the board's 12.5 kHz the torque would ripple by up to 6 % (HX0620).
     pub HubDrive {
         motor: "../../motors/trivedi-keshri-660w.toml",
         board: "vesc-4",

@@ -29,7 +29,7 @@ const SET_ASIDE: [Limited; 2] = [
 ];
 
 /// Speed up to which the bus drives the whole current, percent of the rated one.
-fn envelope(drive: &Prepared) -> f64 {
+pub fn envelope(drive: &Prepared) -> f64 {
     let lasts = Envelope::of(&drive.spec).speed(drive.demand());
     100.0 * lasts.expect("a speed") / drive.spec.motor.rated_speed
 }
@@ -226,8 +226,7 @@ fn rounding_that_is_predicted_ripples_less() {
 }
 
 /// Motors of other makers, on which nothing is tuned.
-#[test]
-fn every_motor_set_aside_is_right_by_default() {
+pub fn set_aside() -> Vec<SelectedMotor> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/set_aside");
     let files = fs::read_dir(folder).expect("a folder");
     let mut paths: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
@@ -238,7 +237,12 @@ fn every_motor_set_aside_is_right_by_default() {
         .map(|path| SelectedMotor::find(&path.to_string_lossy(), &plant).expect("is a motor"))
         .collect();
     assert!(motors.len() >= 10, "{paths:?}");
-    check(&prepared(&motors), &SET_ASIDE);
+    motors
+}
+
+#[test]
+fn every_motor_set_aside_is_right_by_default() {
+    check(&prepared(&set_aside()), &SET_ASIDE);
 }
 
 /// Random motors, in a push and in the nightly run.
