@@ -199,6 +199,10 @@ codes! {
     TripByBraking = 623,
     /// A stall time-out shorter than the motor's fastest start.
     StallBeforeStart = 624,
+    /// A control period that is too long for the motor's speed or inductance.
+    LongControlPeriod = 625,
+    /// A dead time that is not stated, and that would be felt.
+    NoDeadTime = 626,
     /// An internal error of the generator.
     Internal = 901,
 }

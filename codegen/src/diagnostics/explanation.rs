@@ -553,7 +553,7 @@ impl Code {
             Self::CurrentFarAboveRated => say(
                 "The copper loss rises with the square of the current: at five times the rated current it is 25 times that of the rating. Nothing in the drive counts how long the windings bear it, so such a value is rather a wrong power of ten.",
                 "hall_timer_clock = \"1 MHz\"\nrated_current = \"5 A peak\"\nmax_current = \"25 A\"",
-                "hall_timer_clock = \"1 MHz\"\nrated_current = \"5 A peak\"\nmax_current = \"10 A\"",
+                "hall_timer_clock = \"1 MHz\"\nrated_current = \"5 A peak\"\nmax_current = \"10 A\"\ndead_time = \"300 ns\"",
                 "Lower max_current to what the windings bear, or correct rated_current. If short peaks are meant, let the application limit their time.",
             ),
             Self::GainUnlikeBoard => say(
@@ -579,6 +579,18 @@ impl Code {
                 "bus_voltage = \"100 V\"\nrated_speed = \"4000 rpm\"",
                 "bus_voltage = \"100 V\"\nrated_speed = \"4000 rpm\"\nhall_timer_clock = \"1 MHz\"",
                 "Let a timer capture the Hall edges, and state its clock as hall_timer_clock; or raise f_pwm, so that the rotor turns less in a period.",
+            ),
+            Self::LongControlPeriod => say(
+                "At rated speed the rotor turns by more than 15 electrical degrees in a control period, or the bus changes the current in a PWM period by more than five times the rated one. A voltage that is computed once a period no longer fits the EMF by then, or the pulses' own ripple is larger than the current.",
+                "resistance = \"20 mohm per_phase\"\ninductance = \"10 uH per_phase\"\nhall_timer_clock = \"1 MHz\"\ndead_time = \"500 ns\"",
+                "resistance = \"20 mohm per_phase\"\ninductance = \"10 uH per_phase\"\nhall_timer_clock = \"1 MHz\"\ndead_time = \"500 ns\"\nf_pwm = \"40 kHz\"",
+                "Raise f_pwm to what the text names, or lower pwm_per_control, if the core is fast enough; a step's time stands in the data sheet. A bus of less voltage changes the current less.",
+            ),
+            Self::NoDeadTime => say(
+                "Between switching one transistor off and the other on an inverter waits for its dead time, and meanwhile the current chooses the voltage. With a small inductance even a microsecond of that moves the current by a share that is felt as ripple and lost torque. The drive compensates it, but only a dead time that it knows.",
+                "inductance = \"50 uH per_phase\"\nhall_timer_clock = \"1 MHz\"",
+                "inductance = \"50 uH per_phase\"\nhall_timer_clock = \"1 MHz\"\ndead_time = \"500 ns\"",
+                "State the dead time that the timer or the gate driver inserts. A board of the library brings it.",
             ),
             _ => say(
                 "The generator broke one of its own rules: a bug of this program, not of the specification.",

@@ -24,6 +24,7 @@ pub(crate) mod fields;
 mod harmonics;
 pub(crate) mod health;
 mod load;
+mod long_period;
 mod macro_syntax;
 mod model;
 mod normalised;

@@ -12,7 +12,6 @@ use crate::closed_loop::{LimitOptions, RunOptions, speed_limit};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
 use crate::envelope::envelope_on;
 use crate::judgement::Judgement;
-use crate::period::long_period;
 use crate::plant::PlantParams;
 use crate::robustness::measured;
 use crate::times::longer_in_c;
@@ -263,7 +262,7 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         );
     }
     if advice.recommended.is_none()
-        && let Some(long) = first.and_then(|drive| long_period(&drive.spec))
+        && let Some(long) = first.and_then(|drive| drive.spec.long_period())
     {
         let _ = write!(advice.reason, "; {long}");
     }

@@ -6,7 +6,6 @@
 use crate::closed_loop::Trip;
 use crate::engine::Prepared;
 use crate::motors::greatest_ripple;
-use crate::period::long_period;
 use crate::plant::PlantError;
 use crate::text::significant;
 use crate::times::Time;
@@ -256,7 +255,7 @@ impl Judgement {
     fn judge(&self, drive: &Prepared) -> (bool, String) {
         let (nominal, lowest) = self.runs();
         if let Some(trip) = nominal.iter().find_map(|point| point.tripped) {
-            let long = long_period(&drive.spec).map(|text| format!("; {text}"));
+            let long = drive.spec.long_period().map(|text| format!("; {text}"));
             let long = long.unwrap_or_default();
             return (false, format!("does not work: {trip}{long}"));
         }
@@ -315,7 +314,6 @@ impl Judgement {
                 .filter_map(|point| point.lost_on_bus(returned_most)),
         );
         buts.extend(self.ripples(&drive.spec));
-        buts.extend(long_period(&drive.spec));
         if self.rated_counts < COUNTS {
             let counts = significant(self.rated_counts, 3);
             buts.push(format!("rated current is {counts} ADC counts only"));

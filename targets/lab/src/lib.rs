@@ -20,7 +20,6 @@ mod interpreted;
 pub mod judgement;
 pub mod log;
 pub mod motors;
-pub mod period;
 pub mod plant;
 mod progress;
 mod readings;

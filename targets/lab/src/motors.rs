@@ -2,7 +2,6 @@
 
 use crate::closed_loop::{ClosedLoop, Measurement, Trip};
 use crate::engine::{Model, PlantOptions, Prepared, SelectedMotor, plant_of, run_of};
-use crate::period::degrees_per_period;
 use crate::plant::{Mechanics, Plant};
 use crate::{LabError, Progress};
 use hexagen_codegen::spec::{Envelope, MOST_RIPPLE, Spec};
@@ -241,7 +240,7 @@ impl FreeStart {
 /// Greatest ripple of a drive that is right, percent.
 pub fn greatest_ripple(spec: &Spec) -> f64 {
     let [fine, coarse] = RIPPLE;
-    if degrees_per_period(spec) <= COARSE {
+    if spec.degrees_per_period() <= COARSE {
         fine
     } else {
         coarse
@@ -322,7 +321,7 @@ fn entry(motor: &SelectedMotor, points: &[RatedPoint]) -> LibraryMotor {
         rated_torque_nm: Some(drive.rated_torque()),
         rated_rpm: Some(drive.rated_rpm()),
         t_s: Some(inverter.t_s),
-        degrees_per_period: Some(degrees_per_period(&drive.spec)),
+        degrees_per_period: Some(drive.spec.degrees_per_period()),
         envelope_pct: Envelope::of(&drive.spec)
             .speed(drive.demand())
             .map(|lasts| 100.0 * lasts / spec.rated_speed),

@@ -455,6 +455,32 @@ pub fn sampled_halls(period: &Part, degrees: f64, ripple: f64) -> Diagnostic {
     )
 }
 
+/// A control period that is too long, with the `clause` that says how much and what to change.
+pub fn long_control_period(period: &Part, clause: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::LongControlPeriod,
+        &period.location,
+        format!(
+            "`{}`: {}: {clause}; as it is, the torque ripples by more than most drives do",
+            period.field, period.given
+        ),
+    )
+}
+
+/// An inverter at `location` without a dead time, of which a `usual` one moves the current by the share `moved` of the
+/// rated one.
+pub fn no_dead_time(location: &Location, usual: f64, moved: f64) -> Diagnostic {
+    Diagnostic::new(
+        Code::NoDeadTime,
+        location,
+        format!(
+            "`dead_time` is not stated, and with {} of it, as many inverters have, the bus would move the current by {:.1} % of the rated one in a control period, and the torque would ripple: state the inverter's, so that the drive compensates it, or `0 s` if it has none",
+            engineering(usual, "s"),
+            100.0 * moved,
+        ),
+    )
+}
+
 /// A trip by a bus voltage near the nominal one, with a motor that brakes and no fade; in volt: nominal, and the level
 /// that a fade ends at. `limit`: a limit of the returned current.
 pub fn trip_by_braking(level: &Part, limit: Option<&Part>, [nominal, end]: [f64; 2]) -> Diagnostic {

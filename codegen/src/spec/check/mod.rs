@@ -14,6 +14,7 @@ mod inverter;
 mod motor;
 mod origins;
 mod relations;
+mod ripple;
 mod sensing;
 mod sensing_window;
 mod trips;
@@ -24,8 +25,7 @@ pub use origins::{Origin, Origins};
 use self::inverter::Inverter;
 use self::motor::Motor;
 use super::reader::Reader;
-use super::{MOST_RIPPLE, Spec, SpecAst, fields};
-use crate::diagnostics::catalogue::Part;
+use super::{Spec, SpecAst, fields};
 use crate::diagnostics::{Code, Collector, Diagnostic, Diagnostics, catalogue};
 
 /// Checks a specification and fills in every default.
@@ -110,7 +110,7 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
             };
             trips::check(&inverter_reader, &motor, &spec, &mut warnings);
             if let Some(period) = period {
-                check_sampled_halls(period, &spec, &mut warnings);
+                ripple::check(&inverter_reader, period, &spec, &mut warnings);
             }
             let origins = Origins::new(ast, &whole_inverter, &whole_controller, warnings);
             errors.into_result((spec, origins))
@@ -141,19 +141,6 @@ fn check_gain(ast: &SpecAst, inverter: &Inverter, warnings: &mut Vec<Diagnostic>
         ));
     }
     Some(())
-}
-
-/// Warns where Hall edges that are seen at samples only make the torque ripple.
-fn check_sampled_halls(period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
-    let Some(ripple) = spec.sampled_ripple() else {
-        return;
-    };
-    // In full percent, as it is told: it is an estimate, good to a tenth.
-    if (100.0 * ripple).round() <= 100.0 * MOST_RIPPLE {
-        return;
-    }
-    let degrees = spec.motor.rated_turn(spec.inverter.t_s);
-    warnings.push(catalogue::sampled_halls(period, degrees, ripple));
 }
 
 /// Fields that options need, and that are stated but in error.

@@ -375,7 +375,7 @@ const FELT_COUNT: f64 = 0.005;
 
 /// Change of the current in a control period by the dead time, over the rated current. Above it the dead time is
 /// compensated by default with a proportional reference too; below it, the torque ripples by about a percent.
-const FELT_DEAD_TIME: f64 = 0.02;
+pub(crate) const FELT_DEAD_TIME: f64 = 0.02;
 
 /// The rule of the mean of three pulsed legs.
 pub(crate) const COMMON_MODE: Rule = rule::choice::<CommonMode>("common_mode", "clamped_low")

@@ -371,7 +371,8 @@ fn newcomer(motor: &str, voltage: u32, range: u32) -> String {
     format!(
         "[motor]\n{motor}\n[inverter]\nbus_voltage = \"{voltage} V\"\nf_pwm = \"20 kHz\"\n\
          timer_clock = \"170 MHz\"\nadc_bits = 12\nadc_range = \"{range} A\"\n\
-         current_sensing = \"in_phase\"\n[controller]\nkind = \"pdcc\"\n"
+         current_sensing = \"in_phase\"\n\
+         dead_time = \"300 ns\"\n[controller]\nkind = \"pdcc\"\n"
     )
 }
 

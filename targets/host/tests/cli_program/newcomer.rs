@@ -465,9 +465,8 @@ fn check_names_the_frequency_that_makes_the_period_short_enough() {
 #[test]
 fn check_names_the_frequency_that_suits_the_inductance() {
     let said = run(["check", "br2804-1700kv"]);
-    let words: Vec<&str> = said.stdout.split_whitespace().collect();
-    let told = "a PWM period changes the current by 6.9 times the rated one: use `f_pwm` of at least 56 kHz";
-    assert!(words.join(" ").contains(told), "{said:?}");
+    let told = "warning[HX0625]: `f_pwm`: 40 kHz: a PWM period changes the current by 6.9 times the rated one: use `f_pwm` of at least 56 kHz";
+    assert!(said.stderr.contains(told), "{said:?}");
 }
 
 /// A ramp changes nothing of what lasts.

@@ -2,10 +2,9 @@
 
 use crate::encoder::with_encoder;
 use crate::exact::least_ripple;
-use hexagen_codegen::spec::Envelope;
+use hexagen_codegen::spec::{Envelope, RotorSensing, Spec};
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, prepare};
 use hexagen_lab::motors::{FreeStart, Limit, RatedPoint, SPEEDS, further, greatest_ripple};
-use hexagen_lab::period::{can_be_right, degrees_per_period};
 use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -32,6 +31,12 @@ const SET_ASIDE: [Limited; 2] = [
 pub fn envelope(drive: &Prepared) -> f64 {
     let lasts = Envelope::of(&drive.spec).speed(drive.demand());
     100.0 * lasts.expect("a speed") / drive.spec.motor.rated_speed
+}
+
+/// Whether a default drive can be right: it has an edge timer or an angle sensor, and its period is short enough for the
+/// motor.
+pub fn can_be_right(spec: &Spec) -> bool {
+    spec.inverter.rotor_sensing != RotorSensing::SampledHalls && spec.long_period().is_none()
 }
 
 /// Whether a limit follows from the data of motor and inverter, whatever the control.
@@ -93,7 +98,7 @@ impl<'d> Points<'d> {
     /// One line: at each speed the torque furthest from the demand and the greatest ripple, percent.
     fn line(&self) -> String {
         let (name, spec) = (&self.drive.motor, &self.drive.spec);
-        let (degrees, envelope) = (degrees_per_period(spec), envelope(self.drive));
+        let (degrees, envelope) = (spec.degrees_per_period(), envelope(self.drive));
         let mut line = format!("{name:22} {degrees:5.2} deg, bus up to {envelope:3.0} %");
         let wrong = self.wrong();
         for speed in SPEEDS {
@@ -260,7 +265,7 @@ fn random_motors_are_right_by_default() {
     let wrong: Vec<(String, RatedPoint)> = drawn
         .par_iter()
         .flat_map_iter(|drive| {
-            let degrees = degrees_per_period(&drive.spec);
+            let degrees = drive.spec.degrees_per_period();
             let wrong = Points::of(drive).wrong().into_iter();
             let unexplained =
                 wrong.filter(|(point, ..)| !is_physical(drive, point.speed_pct, point.limit()));

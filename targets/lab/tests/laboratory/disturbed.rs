@@ -5,7 +5,6 @@ use hexagen_lab::closed_loop::{Measurement, measure};
 use hexagen_lab::engine::{
     Model, MotorSource, PlantOptions, Prepared, SelectedMotor, prepare, run_of,
 };
-use hexagen_lab::period::degrees_per_period;
 use rayon::prelude::*;
 
 /// Controllers with a modulator and an observer.
@@ -123,7 +122,7 @@ impl Disturbance {
 
     /// Least torque and greatest ripple, percent of the demand. Edges that are seen at samples add a ripple of their own.
     fn limits(self, spec: &Spec) -> [f64; 2] {
-        let fine = degrees_per_period(spec) <= 12.0;
+        let fine = spec.degrees_per_period() <= 12.0;
         let of_edges = 100.0 * spec.sampled_ripple().unwrap_or(0.0);
         let [torque, ripple] = match self {
             UnstatedDeadTime => [96.0, 9.0],

@@ -1,9 +1,9 @@
 //! The default drive against the best of all variants: what a person loses who states a motor and nothing
 //! else.
 
+use crate::defaults::can_be_right;
 use hexagen_lab::advise::{DEFAULT, Regret, regret};
 use hexagen_lab::engine::{MotorSource, PlantOptions, SelectedMotor};
-use hexagen_lab::period::can_be_right;
 use hexagen_tests::random_motor::{RandomMotor, random_drives};
 
 /// Most torque, percent of the rated one, and most ripple, percent of the mean, that it may lack.

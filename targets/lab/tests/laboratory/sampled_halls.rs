@@ -4,7 +4,6 @@ use crate::defaults::{envelope, set_aside};
 use hexagen_codegen::spec::{MOST_RIPPLE, RotorSensing};
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::motors::{QUADRANTS, TORQUE};
-use hexagen_lab::period::degrees_per_period;
 use rayon::prelude::*;
 
 /// Speeds over the rated one. In some of them a sixth of a turn is a whole number of periods, and edges are seen in
@@ -68,7 +67,7 @@ fn check(motors: &[SelectedMotor]) -> usize {
         .map(|(law, drive)| {
             let stated = 100.0 * drive.spec.sampled_ripple().expect("is sampled");
             let (ripple, torque) = worst(drive);
-            let degrees = degrees_per_period(&drive.spec);
+            let degrees = drive.spec.degrees_per_period();
             let text = format!(
                 "{:22} {law:6} {degrees:5.2} deg: {stated:5.1} % told, {ripple:5.1} % and {torque:.4} of the torque measured",
                 drive.motor

@@ -1,0 +1,51 @@
+//! Warnings of what makes the torque ripple: Hall edges seen at samples, a long control period, a dead time not stated.
+
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::catalogue;
+use crate::diagnostics::catalogue::Part;
+use crate::spec::controller::common::FELT_DEAD_TIME;
+use crate::spec::reader::Reader;
+use crate::spec::{MOST_RIPPLE, Spec};
+
+/// A dead time as many inverters have it, second: the median of the board library.
+const USUAL_DEAD_TIME: f64 = 500e-9;
+
+/// `period`: the field that states the control period.
+pub(super) fn check(inverter: &Reader, period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
+    check_sampled_halls(period, spec, warnings);
+    if let Some(clause) = spec.long_period() {
+        warnings.push(catalogue::long_control_period(period, &clause));
+    }
+    check_dead_time(inverter, spec, warnings);
+}
+
+/// Hall edges that are seen at samples only.
+fn check_sampled_halls(period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
+    let Some(ripple) = spec.sampled_ripple() else {
+        return;
+    };
+    // In full percent, as it is told: it is an estimate, good to a tenth.
+    if (100.0 * ripple).round() <= 100.0 * MOST_RIPPLE {
+        return;
+    }
+    warnings.push(catalogue::sampled_halls(
+        period,
+        spec.degrees_per_period(),
+        ripple,
+    ));
+}
+
+/// A dead time that is not stated, and of which a usual one would be compensated.
+fn check_dead_time(reader: &Reader, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
+    let (motor, inverter) = (&spec.motor, &spec.inverter);
+    let pulses_all = spec.controller.common_mode().is_some();
+    let lost = f64::from(inverter.pwm_per_control) * inverter.v_bus * USUAL_DEAD_TIME;
+    let moved = lost / (motor.inductance * motor.rated_current);
+    if pulses_all && reader.field("dead_time").is_none() && moved > FELT_DEAD_TIME {
+        warnings.push(catalogue::no_dead_time(
+            reader.location(),
+            USUAL_DEAD_TIME,
+            moved,
+        ));
+    }
+}
