@@ -6,8 +6,8 @@
 //! i = sign(j) (I s(theta + sign(j) alpha) - max(0, I share(alpha) - |j|) s(theta)),
 //!
 //! with s the proportional reference per ampere and share(alpha) the torque that the turned current still
-//! makes. So the current against the field is I sin(alpha) whatever the set-point, and the torque is that of
-//! the set-point until |i| reaches I; then it falls with share(alpha).
+//! makes. So, of a sine, the current against the field is I sin(alpha) whatever the set-point, and the torque is
+//! that of the set-point until |i| reaches I; then it falls with share(alpha).
 //!
 //! Of a shape with harmonics the difference of two turned shapes has its current in pulses at the edges of one phase at a
 //! time. Their voltage is cut where that of an even current is not, and their torque cancels in the mean only. While
@@ -90,14 +90,15 @@ impl<'b> FieldWeakening<'b> {
         named! {
             let weakens = angle.is_above(0);
         }
-        l.b.guarded_stage(
-            "weaken_field",
-            weakens,
-            true,
-            &[
-                "The greatest current, turned against the field, less what the set-point does not ask of its part along the EMF.",
-            ],
-        );
+        let turned = "The greatest current, turned against the field, less what the set-point does not ask of its part along the EMF.";
+        let even = "While current is left, the set-point's current and one across the EMF instead, which makes no torque.";
+        let is_sine = l.spec.motor.emf_shape == EmfShape::Sinusoidal;
+        let docs = if is_sine {
+            &[turned][..]
+        } else {
+            &[turned, even]
+        };
+        l.b.guarded_stage("weaken_field", weakens, true, docs);
         let largest = largest_set_point(l, self.top);
         named! {
             let pushes = set_point.is_at_least(0);
@@ -121,7 +122,7 @@ impl<'b> FieldWeakening<'b> {
         named! {
             let j_weak = turned.map(|turned| pushes.sign(turned));
         }
-        let j_weak = if l.spec.motor.emf_shape == EmfShape::Sinusoidal {
+        let j_weak = if is_sine {
             j_weak
         } else {
             let left = [surplus, largest - set_point.abs()];
@@ -171,7 +172,8 @@ impl<'b> FieldWeakening<'b> {
         }
         let ([against], shift) = lifted([("against_lifted", against)]);
         named! {
-            let j_weak_most = largest_set_point(l, self.top) << 1;
+            // No shape that is accepted has a peak of so much per ampere of set-point.
+            let j_weak_most = largest_set_point(l, self.top) << 2;
             let across = shape.unit.map(|unit| against.mul_floor(unit, shift));
             let j_even = Phases([
                 along.a() - (across.a() + (across.b() << 1)),

@@ -447,6 +447,22 @@ mod tests {
         assert!(near(sine.proportional_peak(), 1.0));
     }
 
+    /// A current turned for field weakening is up to 5 % greater, and limited at 4 times the set-point.
+    #[test]
+    fn no_shape_that_is_accepted_has_a_peak_near_four() {
+        let amplitudes = || (-10..=10).map(|step| 0.05 * f64::from(step));
+        let series = amplitudes().flat_map(|fifth| {
+            amplitudes().map(move |seventh| Harmonics::of([(5, fifth, 0.0), (7, seventh, 0.0)]))
+        });
+        let accepted = series.filter(|series| series.least_along() >= 0.5);
+        let shapes = accepted.map(EmfShape::Harmonics);
+        let peaks = shapes
+            .filter(|shape| shape.steepness() <= 8.0)
+            .map(EmfShape::proportional_peak);
+        let most = peaks.fold(0.0, f64::max);
+        assert!((2.5..3.5).contains(&most), "{most}");
+    }
+
     #[test]
     fn the_integral_is_the_integral_of_the_shape() {
         for shape in SHAPES {

@@ -129,9 +129,10 @@ impl InverterSpec {
     }
 
     /// Time from the turning point at which a control period begins to the sampling instant, second; negative
-    /// before it. With sensors in the low legs it is stated, or by rule as here where it is felt. Each edge of a leg comes late by the dead time or not at all, whichever way its current flows,
-    /// so the middle of its pulses, at which the sample is the mean of the current, comes half of it late. A drive
-    /// without computation delay samples before: its command acts from the turning point on.
+    /// before it. With sensors in the low legs it is stated, or by rule as here where it is felt. Each edge of a leg
+    /// comes late by the dead time or not at all, whichever way its current flows, so the middle of its pulses, at which
+    /// the sample is the mean of the current, comes half of it late. A drive without computation delay samples before:
+    /// its command acts from the turning point on.
     pub fn sampling_delay(&self, delay: u32) -> f64 {
         match self.current_sensing {
             CurrentSensing::InPhase if delay == 0 => 0.0,
@@ -230,6 +231,13 @@ impl Spec {
 }
 
 impl SensingTimes {
+    /// Mean instant of the conversions of so many phases behind the first, second.
+    pub fn mean_of_conversions(self, phases: usize) -> f64 {
+        let phases = phases as u32;
+        let waits = (0..phases).map(|place| f64::from(place / self.converters));
+        waits.sum::<f64>() / f64::from(phases) * self.conversion
+    }
+
     /// The window of so many phases.
     pub fn window(self, dead_time: f64, phases: usize) -> SensingWindow {
         let further = f64::from((phases as u32).div_ceil(self.converters) - 1);

@@ -362,20 +362,22 @@ pub fn adc_offset(offset: &Part, full: u32) -> Diagnostic {
     )
 }
 
-/// The window in which a leg must be low to be sampled takes too much of the PWM period. `needed`: before and behind
-/// the turning point, second; `most`: what either may take, second, and the least duty that it leaves; `f_pwm`: the
+/// The window in which a leg must be low to be sampled takes too much of the PWM period. `leads`: it is sampled before
+/// the turning point; `needed`: before and behind that, second; `most`: what either may take, second, and the least duty that it leaves; `f_pwm`: the
 /// greatest PWM frequency that leaves so much, hertz.
 pub fn sensing_window(
     parts: &[Part],
-    period: &Part,
+    (period, leads): (&Part, bool),
     [before, after]: [f64; 2],
     [most, duty]: [f64; 2],
     f_pwm: Option<f64>,
 ) -> Diagnostic {
-    let remedy = if before >= after {
+    let remedy = if before < after {
+        "shorten `aperture_time` or `conversion_time`, or raise `sampling_lead`"
+    } else if leads {
         "shorten `settling_time`, `dead_time` or `sampling_lead`"
     } else {
-        "shorten `aperture_time` or `conversion_time`, or raise `sampling_lead`"
+        "shorten `settling_time` or `dead_time`"
     };
     let slower = f_pwm.map_or(String::new(), |f_pwm| {
         let f_pwm = engineering(at_most(f_pwm), "Hz");

@@ -54,9 +54,11 @@ const LEAD: &str = "sampling_lead";
 /// dead time delays.
 const FELT_DELAY: f64 = 0.005;
 
-/// The sampling instant of sensors in the low legs, which depends on motor and controller. Half the dead time behind the
-/// turning point, in the middle of the pulses, where the current moves too far until then; the timer's update makes no
-/// such trigger, so it is at the turning point elsewhere. A command without computation delay acts from there on.
+/// The sampling instant of sensors in the low legs, which depends on motor and controller. The mean of all conversions
+/// comes half the dead time behind the turning point, in the middle of the pulses, where the current moves too far until
+/// then; the timer's update makes no such trigger, so it is at the turning point elsewhere. A command without computation
+/// delay acts from there on, and so does one that turns a leg off; and what is not readable for longer behind the
+/// turning point than before it costs no voltage of two sensed legs.
 pub(super) fn place_instant(
     reader: &Reader,
     inverter: &mut Inverter,
@@ -64,7 +66,9 @@ pub(super) fn place_instant(
     controller: Option<&ControllerSpec>,
     errors: &mut Collector,
 ) -> Option<()> {
-    let delay = controller?.common().delay;
+    let controller = controller?;
+    let delay = controller.common().delay;
+    let phases = inverter.sensing.phases.phases().len();
     let CurrentSensing::LowSide(times) = inverter.sensing.place.as_mut()? else {
         return None;
     };
@@ -74,17 +78,24 @@ pub(super) fn place_instant(
                 &field.location,
                 LEAD,
                 &engineering(times.lead, "s"),
-                "0 s (with `delay = 0` the command acts from the turning point on)",
+                "0 s (with a `delay` of 0 the command acts from the turning point on; 1 allows it)",
                 "100 us",
             ));
         }
         return None;
     }
-    let half = inverter.dead_time.as_ref()?.si / 2.0;
+    let dead_time = inverter.dead_time.as_ref()?.si;
+    let late = dead_time / 2.0 - times.mean_of_conversions(phases);
     let emf = motor.emf_constant? * motor.rated_speed.as_ref()?.si;
-    let moved = emf * half / motor.inductance?;
-    if delay > 0 && moved > FELT_DELAY * motor.rated_current.as_ref()?.si {
-        times.lead = -half;
+    let moved = emf * late / motor.inductance?;
+    let is_felt = moved > FELT_DELAY * motor.rated_current.as_ref()?.si;
+    let placed = SensingTimes {
+        lead: -late,
+        ..*times
+    };
+    let window = placed.window(dead_time, phases);
+    if delay > 0 && is_felt && controller.turns_off().is_none() && window.after <= window.before {
+        *times = placed;
     }
     Some(())
 }

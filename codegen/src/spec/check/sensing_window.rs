@@ -48,7 +48,7 @@ pub(super) fn check(
         let mut parts = [
             ("settling_time", times.settling, true),
             ("dead_time", dead_time, true),
-            ("sampling_lead", times.lead, true),
+            ("sampling_lead", times.lead.abs(), times.lead >= 0.0),
             ("aperture_time", times.aperture, false),
             ("conversion_time", times.conversion, false),
         ];
@@ -61,7 +61,7 @@ pub(super) fn check(
         let f_pwm = ((1.0 - LEAST_DUTY) / 2.0 / needed).min(*F_PWM.end());
         errors.push(catalogue::sensing_window(
             &parts,
-            period,
+            (period, times.lead > 0.0),
             [window.before, window.after],
             [half_low, LEAST_DUTY],
             Some(f_pwm).filter(|f_pwm| F_PWM.contains(f_pwm)),

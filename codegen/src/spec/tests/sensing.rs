@@ -287,9 +287,42 @@ fn shunts_are_read_behind_the_turning_point_where_the_dead_time_is_felt() {
     let behind = stated("-100 ns").replace("kind = \"pdcc\"", "kind = \"pdcc\"\ndelay = 0");
     for text in [&behind, &behind.replace("dead_time = \"600 ns\"\n", "")] {
         let told = checked(text).expect_err("acts at once").to_string();
-        let named = "`sampling_lead`: -100 ns lies outside 0 s (with `delay = 0`";
+        let named = "`sampling_lead`: -100 ns lies outside 0 s (with a `delay` of 0 ";
         assert!(told.contains(named), "{told}");
     }
+}
+
+/// One ADC that reads the phases in turn is late by itself; and no default costs what was readable before.
+#[test]
+fn the_mean_of_all_conversions_is_in_the_middle_of_late_pulses() {
+    let told = |sensors: &str, controller: &str| {
+        let sensors = format!(
+            "adc_range = \"40 A\"\ncurrent_sensing = \"low_side\"\ndead_time = \"600 ns\"\nsettling_time = \"1 us\"\n{sensors}"
+        );
+        let text = COMPLETE
+            .replace("current_sensing = \"in_phase\"\n", "")
+            .replace("adc_range = \"40 A\"", &sensors)
+            .replace("0.22 mH", "20 uH")
+            .replace("kind = \"pdcc\"", controller);
+        let checked = parse_toml(&text, "m.toml").and_then(|ast| check(&ast));
+        let (spec, _) = checked.expect("a right specification");
+        spec.sampling_instant()
+    };
+    let at = |time: &str| Some(format!("{time} behind the turning point of the timer"));
+    let in_turn = "aperture_time = \"200 ns\"\nconversion_time";
+    let pdcc = "kind = \"pdcc\"";
+    assert_eq!(told(&format!("{in_turn} = \"300 ns\""), pdcc), at("150 ns"));
+    assert_eq!(told(&format!("{in_turn} = \"700 ns\""), pdcc), None);
+    let three = format!("sensed_phases = \"abc\"\n{in_turn} = \"150 ns\"");
+    assert_eq!(told(&three, pdcc), at("150 ns"));
+    let at_once = format!("{three}\ncurrent_adcs = 2");
+    assert_eq!(told(&at_once, pdcc), at("250 ns"));
+    // Behind the turning point for longer than before it.
+    let slow = "aperture_time = \"1.2 us\"\nconversion_time = \"0 us\"";
+    assert_eq!(told(slow, pdcc), None);
+    // Legs that are off are read before the next command acts.
+    let early = "sensed_phases = \"abc\"\naperture_time = \"0 us\"\nconversion_time = \"0 us\"";
+    assert_eq!(told(early, "kind = \"pdcc\"\nmodulation = \"pair\""), None);
 }
 
 /// 10 bits a turn of the shaft are 64 periods of filter, 3.2 ms.

@@ -33,7 +33,7 @@ use embassy_stm32::triggers::TIM1_TRGO;
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{Config, Peripherals, bind_interrupts};
 use hexagen::{Control, Legs, Sample};
-use hexagen_stm32::{LEAD, outputs, specified_dead_time};
+use hexagen_stm32::{LEAD, is_sampled_at_update, outputs, specified_dead_time};
 
 /// The timers' clock, the specification's `timer_clock`.
 const TIMER_HZ: u32 = 170_000_000;
@@ -43,6 +43,10 @@ const _: () = assert!(HubDrive::HALL_TIMER_HZ * HALL_PRESCALER as u32 == TIMER_H
 const _: () = assert!(
     2 * HubDrive::TIMER_PERIOD as u64 * 1_000_000_000 == HubDrive::T_S_NS as u64 * TIMER_HZ as u64,
     "the specification has another `timer_clock`"
+);
+const _: () = assert!(
+    is_sampled_at_update(HubDrive::SPEC),
+    "`TIM1`'s update starts the ADCs here: state `sampling_lead: 0 ns`, or start them by its channel 4"
 );
 /// The specification's `dead_time`.
 const DEAD_TIME: u8 = match specified_dead_time(HubDrive::SPEC, TIMER_HZ) {

@@ -49,6 +49,23 @@ pub const fn specified_dead_time(spec: &str, timer_hz: u32) -> Option<u8> {
     dead_time(clocks as u16)
 }
 
+/// Whether a drive samples its shunts in the low legs at the timer's turning point, where the update event can start the
+/// ADCs; otherwise a compare event has to (`SPEC`: `sampling_lead`, second, negative behind the turning point).
+///
+/// ```
+/// use hexagen_stm32::is_sampled_at_update;
+///
+/// assert!(is_sampled_at_update("[inverter]\nsampling_lead = 0.0\n"));
+/// assert!(!is_sampled_at_update("[inverter]\nsampling_lead = -5e-7\n"));
+/// ```
+#[must_use]
+pub const fn is_sampled_at_update(spec: &str) -> bool {
+    match value_of(spec.as_bytes(), b"\nsampling_lead = ") {
+        Some(number) => picoseconds(number) == 0,
+        None => false,
+    }
+}
+
 /// What follows a key, to the end of the text.
 const fn value_of<'t>(text: &'t [u8], key: &[u8]) -> Option<&'t [u8]> {
     let mut rest = text;
@@ -81,7 +98,9 @@ const fn picoseconds(text: &[u8]) -> u128 {
             }
             b'.' => is_behind_point = true,
             b'e' => is_behind_e = true,
-            b'-' => is_negative = true,
+            b'-' if is_behind_e => is_negative = true,
+            // The sign of the whole number is not asked for.
+            b'-' => {}
             _ => break,
         }
         at += 1;

@@ -44,7 +44,7 @@
 
 mod dead_time;
 
-pub use dead_time::{dead_time, specified_dead_time};
+pub use dead_time::{dead_time, is_sampled_at_update, specified_dead_time};
 use hexagen::{LegState, Legs};
 
 /// `CC1E`; those of channels 2 and 3 are four bits up each.

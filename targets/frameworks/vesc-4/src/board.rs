@@ -13,7 +13,7 @@
 
 use crate::HubDrive;
 use hexagen::{Control, Legs, Sample};
-use hexagen_stm32::{LEAD, outputs, specified_dead_time};
+use hexagen_stm32::{LEAD, is_sampled_at_update, outputs, specified_dead_time};
 use stm32f4xx_hal::gpio::{Input, Output, PA7, PB6, PB7, PC4, PC10, PC11, PC12, Pull};
 use stm32f4xx_hal::pac::{ADC1, ADC2, Peripherals, TIM1, TIM2, adc1};
 use stm32f4xx_hal::prelude::*;
@@ -25,6 +25,10 @@ const TIMER_HZ: u32 = 168_000_000;
 const _: () = assert!(
     2 * HubDrive::TIMER_PERIOD as u64 * 1_000_000_000 == HubDrive::T_S_NS as u64 * TIMER_HZ as u64,
     "the specification has another `timer_clock`"
+);
+const _: () = assert!(
+    is_sampled_at_update(HubDrive::SPEC),
+    "`TIM1`'s update starts the ADCs here: state `sampling_lead: 0 ns`, or start them by its channel 4"
 );
 /// The specification's `dead_time`.
 const DEAD_TIME: u8 = match specified_dead_time(HubDrive::SPEC, TIMER_HZ) {

@@ -219,7 +219,7 @@ fn said(sources: &Sources, files: &[(&str, &str)]) -> String {
     let mut cc = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
     cc.current_dir(folder.path())
         .args(["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Werror"])
-        .arg("-DHEXAGEN_SIGNALS")
+        .args(["-DHEXAGEN_SIGNALS", "-DHEXAGEN_VERIFICATION"])
         .args(CHECK.split_whitespace())
         .args([&format!("{}.c", sources.name), "hexagen.c"])
         .args(files.iter().map(|(name, _)| name).filter(|name| {

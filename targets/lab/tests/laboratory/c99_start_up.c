@@ -61,11 +61,41 @@ static bool is_running(void)
     return hub_status(&drive).mode == HEXAGEN_MODE_RUN;
 }
 
+/* Whether a copy of the supervisor has each of its words: all are unlike, within their types. */
+static int is_kept_whole(void)
+{
+    hexagen_supervisor whole;
+    volatile hexagen_supervisor kept;
+    hexagen_supervisor copy;
+    int32_t words[HEXAGEN_WORDS];
+    int32_t told[HEXAGEN_WORDS];
+    int word;
+    for (word = 0; word < HEXAGEN_WORDS; word++) {
+        words[word] = 0;
+    }
+    hexagen_set_words(&whole, words);
+    hexagen_keep(&kept, &whole);
+    for (word = 0; word < HEXAGEN_WORDS; word++) {
+        words[word] = word + 1;
+    }
+    hexagen_set_words(&whole, words);
+    hexagen_keep(&kept, &whole);
+    copy = kept;
+    hexagen_words(&copy, told);
+    for (word = 0; word < HEXAGEN_WORDS; word++) {
+        if (told[word] != words[word]) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 int main(void)
 {
     const hexagen_sample without_code = hexagen_with_hall(2058, 2028, 0);
     hexagen_signals signals;
     hub_trip_record record;
+    EXPECT(is_kept_whole());
     hub_init(&drive);
     unit = drive.supervisor.offset[0] / 2048;
     EXPECT(has_offsets(2048, 2048));

@@ -310,6 +310,24 @@ fn shunts_that_are_read_in_the_middle_of_late_pulses_show_the_mean_current() {
     }
 }
 
+/// One ADC reads the second phase later: the mean of both samples is in the middle of the pulses.
+#[test]
+fn shunts_that_are_read_in_turn_show_the_mean_current() {
+    // That they are not read at once makes a ripple of its own.
+    let off = |lines: &str| {
+        let stated = format!("dead_time = \"1 us\"\n{lines}");
+        let drive = drive_with("odrive-d6374-150kv", "pdcc", Some(&stated));
+        let misses = misses(&drive, StatedDeadTime, &[25, 100]);
+        misses.fold(0.0, |most: f64, miss| most.max((miss.torque - 100.0).abs()))
+    };
+    for conversion in ["400 ns", "1 us"] {
+        let off = off(&format!("conversion_time = \"{conversion}\"\n"));
+        assert!(off < 1.0, "{conversion}: {off} %");
+    }
+    let later = off("conversion_time = \"1 us\"\nsampling_lead = \"-500 ns\"\n");
+    assert!(later > 1.2, "{later} %");
+}
+
 /// A PI regulator alone follows a reference that turns late: of 250 Hz and more it loses torque.
 #[test]
 fn pi_control_keeps_the_torque_where_the_reference_turns_fast() {

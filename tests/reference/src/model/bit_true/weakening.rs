@@ -115,7 +115,7 @@ impl<W: Word> FieldWeakening<W> {
                 let [a, b] = across;
                 let smooth = [along[0] - (a + b + b), along[1] + (a + a + b)];
                 let part = within(even.weight.mul(surplus), 0.0, pow2(EVEN_BITS as i32));
-                let most = self.top + self.top;
+                let most = self.top + self.top + self.top + self.top;
                 both(|x| {
                     let apart = smooth[x] - turned[x];
                     let evened = turned[x] + even.part.floor_product(apart, part);
