@@ -17,6 +17,7 @@ use crate::robustness::measured;
 use crate::times::longer_in_c;
 use crate::{LabError, Progress};
 use hexagen_codegen::diagnostics::{Code, engineering};
+use hexagen_codegen::spec::ast::{Number, Value};
 use hexagen_codegen::spec::{BusSource, Field, OF_CORE, apply_variant};
 use hexagen_codegen::timing::StepTime;
 use rayon::prelude::*;
@@ -163,6 +164,8 @@ pub struct Advice {
     pub tried: Vec<Tried>,
     /// Place of the recommended one; none if all trip or are refused.
     pub recommended: Option<usize>,
+    /// PWM periods in a control period with which all were tried, where the motor's file states fewer.
+    pub pwm_per_control: Option<u32>,
     /// Why that one.
     pub reason: String,
     /// Ripple of that one, in the words of `check`, where `check` tells it.
@@ -213,11 +216,70 @@ pub struct Regret {
     pub ripple_pct: f64,
 }
 
-/// Tries all variants of a motor and recommends one.
+/// Most PWM periods in a control period that are tried on a core that is too slow for one each.
+const MOST_PER_CONTROL: u32 = 4;
+
+/// Tries all variants of a motor and recommends one. Where no variant that fits the control period suits the motor, and
+/// the default drive takes longer than that, all are tried with more PWM periods in a control period.
 ///
 /// # Errors
 /// A plant parameter out of range; a motor of which no variant is generated.
 pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, LabError> {
+    let advice = advise_as_stated(motor, progress)?;
+    let overruns = advice.tried.first().is_some_and(|default| default.overruns);
+    if advice.suits() || !overruns {
+        return Ok(advice);
+    }
+    let Some(per_control) = periods_needed(motor) else {
+        return Ok(advice);
+    };
+    let slower = with_periods(motor, per_control);
+    let with_more = advise_as_stated(&slower, progress)?;
+    if !with_more.suits() {
+        return Ok(advice);
+    }
+    Ok(Advice {
+        pwm_per_control: Some(per_control),
+        ..with_more
+    })
+}
+
+/// The motor with so many PWM periods in a control period.
+fn with_periods(motor: &SelectedMotor, per_control: u32) -> SelectedMotor {
+    const FIELD: &str = "pwm_per_control";
+    let mut motor = motor.clone();
+    let at = motor.ast.name.location.clone();
+    let section = &mut motor.ast.inverter;
+    section.fields.retain(|field| field.name != FIELD);
+    section.fields.push(Field {
+        name: FIELD.to_owned(),
+        name_location: at.clone(),
+        value: Value::Number(Number {
+            digits: per_control.to_string(),
+            value: per_control.into(),
+            unit: None,
+            basis: vec![],
+        }),
+        location: at,
+        assumed: None,
+    });
+    motor
+}
+
+/// PWM periods in a control period that give a step of the default drive the time; none where they would be too many.
+fn periods_needed(motor: &SelectedMotor) -> Option<u32> {
+    (2..=MOST_PER_CONTROL).find(|&periods| {
+        let drive = with_periods(motor, periods).prepare(Some(DEFAULT));
+        let time = drive
+            .as_ref()
+            .ok()
+            .and_then(|drive| drive.generated.interface.times.first());
+        time.is_some_and(|time| !time.is_too_long())
+    })
+}
+
+/// The same with the control period that the motor's file states.
+fn advise_as_stated(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, LabError> {
     let prepared = prepare(motor)?;
     let mut generated = prepared.iter().filter_map(|(_, drive)| drive.as_ref().ok());
     let first = generated.next();
@@ -226,6 +288,7 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
         rated_torque_nm: first.map_or(0.0, Prepared::rated_torque),
         tried: try_all(&prepared, progress)?,
         recommended: None,
+        pwm_per_control: None,
         reason: String::new(),
         ripples: None,
         far_off: Vec::new(),
@@ -257,8 +320,8 @@ pub fn advise(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Advice, 
     }
     if advice.tried.first().is_some_and(|default| default.overruns) {
         advice.reason.push_str(
-            "; a step of the default drive may take longer than the control period: a lower `f_pwm`, or `pwm_per_control = 2`, \
-             gives it the time",
+            "; a step of the default drive may take longer than the control period: a lower `f_pwm`, or more PWM periods in a \
+             control period (`pwm_per_control`), give it the time",
         );
     }
     if advice.recommended.is_none()
@@ -494,6 +557,13 @@ fn left_by_limit(drive: &Prepared, plant: &PlantParams, rpm: f64) -> Option<f64>
 }
 
 impl Advice {
+    /// Whether the recommended variant suits the motor as stated.
+    fn suits(&self) -> bool {
+        let recommended = self.recommended.map(|place| &self.tried[place].nominal);
+        let worst = recommended.and_then(|runs| Worst::of(runs));
+        worst.is_some_and(|worst| worst.torque_pct > 100.0 - FAR_OFF && worst.ripple_pct < ROUGH)
+    }
+
     /// The variants that are alike in torque and ripple, with and without deviations, as good as any. Each
     /// rule leaves some of the others over, and says what it has against the rest.
     fn alike(&mut self) -> Vec<usize> {

@@ -73,11 +73,25 @@ fn verdict(advice: &Advice) -> String {
     };
     let variant = advice.tried[recommended].variant;
     let (motor, mut reason) = (&advice.motor, advice.reason.clone());
+    if let Some(periods) = advice.pwm_per_control {
+        reason = format!(
+            "no variant that fits the file's control period suits the motor, so all were tried with a command every {periods} \
+             PWM periods; {reason}"
+        );
+    }
     if let Some(ripples) = &advice.ripples {
         let _ = write!(reason, "; {ripples}");
     }
+    let slower = advice.pwm_per_control.map_or(String::new(), |periods| {
+        format!("\n  [inverter]\n  pwm_per_control = {periods}")
+    });
     if variant == OWN {
-        return format!("{motor}: the motor file's own controller. Why: {reason}.");
+        let slower = if slower.is_empty() {
+            slower
+        } else {
+            format!("\nIn the motor file:{slower}")
+        };
+        return format!("{motor}: the motor file's own controller. Why: {reason}.{slower}");
     }
     let (kind, options) = variant.split_once(':').unwrap_or((variant, ""));
     let options = options
@@ -111,7 +125,7 @@ fn verdict(advice: &Advice) -> String {
         )
     };
     format!(
-        "{motor}: {variant}. Why: {reason}.\nIn the motor file:\n  [controller]\n{}{left_out}",
+        "{motor}: {variant}. Why: {reason}.\nIn the motor file:{slower}\n  [controller]\n{}{left_out}",
         lines.join("\n")
     )
 }

@@ -162,6 +162,26 @@ fn the_best_controller_of_a_motor_is_recommended_with_the_reason() {
     run(["advise", "teknic-m2310p", "--board", "esc1"]).assert_bad_input(&["esc1"]);
 }
 
+/// A step of the default drive takes two of three PWM periods of such a core, and what fits one ripples.
+#[test]
+fn a_slow_core_is_given_the_time_for_a_good_drive() {
+    let motors = concat!(env!("CARGO_MANIFEST_DIR"), "/../motors/teknic-m2310p.toml");
+    let text = fs::read_to_string(motors).expect("is in the library");
+    let core = "[controller]\ntarget = \"cortex_m0\"\ncore_clock = \"48 MHz\"\n";
+    let text = text.replacen("[controller]\n", core, 1);
+    let advice = on_file("advise", &text, &["--json"]).json();
+    assert_eq!(advice["pwm_per_control"], 3, "{advice}");
+    let place = advice["recommended"].as_u64().expect("a place") as usize;
+    let runs = advice["tried"][place]["nominal"].as_array().expect("runs");
+    for run in runs {
+        let ripple = run["ripple_pct"].as_f64().expect("a ripple");
+        assert!(ripple < 3.0, "{run}");
+    }
+    let told = on_file("advise", &text, &[]).stdout;
+    let lines = "\nIn the motor file:\n  [inverter]\n  pwm_per_control = 3\n";
+    assert!(told.contains(lines), "{told}");
+}
+
 /// The recommended drive ripples as `check` says of it.
 #[test]
 fn advice_tells_of_ripple_what_check_tells() {

@@ -295,8 +295,8 @@ fn errors(controller: &str, word: u32, bound_v: f64) -> ErrorsSeen {
 fn robustness() -> Robustness {
     let disturbances = [
         "none",
-        "R +30 %",
-        "L -30 %",
+        "R x 2",
+        "L x 0.75",
         "dead time 1 us",
         "10-bit ADC, 200 mA off",
     ];

@@ -7,12 +7,16 @@ use hexagen_codegen::spec::{InverterSpec, RotorSensing};
 /// A plant option.
 type Scale = fn(&mut PlantOptions) -> &mut Option<f64>;
 
-/// Parameters of the motor, each with the option that scales it.
-const SCALES: [(&str, Scale); 3] = [
-    ("R", |plant| &mut plant.scale_r),
-    ("L", |plant| &mut plant.scale_l),
-    ("k_b", |plant| &mut plant.scale_kb),
+/// Parameters of the motor, each with the option that scales it, and by how much: copper has twice the resistance at
+/// about 270 degrees, and a data sheet's may be of another temperature or without leads; iron saturates.
+const SCALES: [(&str, Scale, [f64; 2]); 3] = [
+    ("R", |plant| &mut plant.scale_r, [0.5, 2.0]),
+    ("L", |plant| &mut plant.scale_l, [0.75, 1.3]),
+    ("k_b", |plant| &mut plant.scale_kb, [0.8, 1.2]),
 ];
+
+/// True over nominal bus voltage.
+const BUS: f64 = 0.85;
 
 /// Dead times in seconds; the nominal plant has the motor file's.
 const DEAD_TIMES: [f64; 4] = [0.0, 0.5e-6, 1e-6, 2e-6];
@@ -61,16 +65,16 @@ pub fn disturbances(undisturbed: &PlantOptions, inverter: &InverterSpec) -> Vec<
         all.push(Disturbance { name, plant });
     };
     add("none", &|_| {});
-    for (parameter, scale) in SCALES {
-        for (sign, factor) in [("-", 0.7), ("+", 1.3)] {
-            add(&format!("{parameter} {sign}30 %"), &|plant| {
+    for (parameter, scale, factors) in SCALES {
+        for factor in factors {
+            add(&format!("{parameter} x {factor}"), &|plant| {
                 let scale = scale(plant);
                 *scale = Some(factor * scale.unwrap_or(1.0));
             });
         }
     }
-    add("bus -10 %", &|plant| {
-        plant.v_bus = Some(0.9 * plant.v_bus.unwrap_or(inverter.v_bus));
+    add("bus -15 %", &|plant| {
+        plant.v_bus = Some(BUS * plant.v_bus.unwrap_or(inverter.v_bus));
     });
     let known = undisturbed.dead_time.unwrap_or(inverter.dead_time);
     for dead_time in DEAD_TIMES {

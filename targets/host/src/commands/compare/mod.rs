@@ -26,7 +26,7 @@ pub struct Options {
     /// Controller variant, with all figures of merit, or `all` [default: all]
     #[arg(long, value_name = "NAME[:KEY=VALUE,…]", requires = "motor")]
     pub controller: Option<Selection>,
-    /// Run controllers on disturbed plants instead: R, L, k_b +-30 %, bus -10 %, dead time 0 to 2 us,
+    /// Run controllers on disturbed plants instead: R x 0.5 and x 2, L x 0.75 and x 1.3, k_b x 0.8 and x 1.2, bus -15 %, dead time 0 to 2 us,
     /// Hall sensors +-5 degrees off, 10- and 12-bit ADCs with offset, current sensors 2 % apart or with
     /// noise, and, where the board converts one current after the other, both at once. The plant
     /// options apply to all of these plants
