@@ -7,6 +7,7 @@ use crate::{LabError, Progress};
 use hexagen_codegen::spec::{Envelope, MOST_RIPPLE, Spec};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// The controller, with all options at their defaults.
 const CONTROLLER: &str = "pdcc";
@@ -59,13 +60,20 @@ pub struct LibraryMotor {
     pub degrees_per_period: Option<f64>,
     /// Speed up to which the bus drives the whole current of the demand, percent of the rated one.
     pub envelope_pct: Option<f64>,
+    /// Torque that the bus allows at rated speed, up to the greatest set-point, Nm.
+    pub envelope_torque_nm: Option<f64>,
+    /// Starts of the default drive on a free shaft, and those of them that reach rated speed ([`FreeStart::all`]).
+    pub starts: Option<[usize; 2]>,
+    /// Ripple at rated speed if Hall edges were seen at samples only, the generator's estimate, percent; none without
+    /// Hall sensors.
+    pub sampled_ripple_pct: Option<f64>,
     /// Whether the controller of its file can be generated.
     pub generates: bool,
     /// Why not.
     pub reason: Option<String>,
     /// The default drive at each of [`SPEEDS`], the worst of both directions, motoring and braking.
     pub points: Vec<RatedPoint>,
-    /// Whether it is right at all of them: torque within [`TORQUE`], ripple at most [`RIPPLE`].
+    /// Whether it is right at all of them: torque within [`TORQUE`], ripple at most [`RIPPLE`]; and starts.
     pub is_right: bool,
     /// What it is not right for.
     pub limit: Option<Limit>,
@@ -94,8 +102,10 @@ pub enum Limit {
     BusVoltage,
     /// The trip level.
     Trip,
-    /// The angle that passes in a control period.
+    /// The angle that passes in a control period, or what the current changes in one.
     ControlPeriod,
+    /// A start that does not reach rated speed.
+    Start,
 }
 
 impl RatedPoint {
@@ -196,7 +206,32 @@ pub struct FreeStart {
 /// Longest start, over that at the demanded torque.
 const PATIENCE: f64 = 3.0;
 
+/// Inertia of a loaded shaft: the demanded torque takes it to rated speed in so many seconds.
+const LOADED: f64 = 0.25;
+
+/// Start angles, every other one backward.
+const ANGLES: u32 = 12;
+
 impl FreeStart {
+    /// Starts of the bare rotor, where its inertia is known, and with a load, from twelve angles each: inertia in kg m2,
+    /// angle in radian, and sign.
+    ///
+    /// # Errors
+    /// A plant parameter out of range.
+    pub fn all(drive: &Prepared) -> Result<Vec<(Self, [f64; 3])>, LabError> {
+        let motor = &drive.spec.motor;
+        let load = LOADED * drive.demand() / motor.rated_speed;
+        let shafts = motor.inertia.into_iter().chain([load]);
+        let starts = shafts.flat_map(|inertia| (0..ANGLES).map(move |number| (inertia, number)));
+        let run = |(inertia, number): (f64, u32)| {
+            let angle = f64::from(number) * TAU / f64::from(ANGLES);
+            let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let start = Self::measure(drive, inertia, angle, sign)?;
+            Ok((start, [inertia, angle, sign]))
+        };
+        starts.map(run).collect()
+    }
+
     /// Runs a drive from rest to its rated speed with its demanded torque, from an electrical angle in
     /// radians; `sign`: -1 for backward. The shaft has an inertia in kg m2 and no load.
     ///
@@ -259,16 +294,40 @@ pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, L
         .map(|motor| motor.prepare(Some(CONTROLLER)).ok())
         .collect();
     progress.begin("running at the rating", motors.len() as u64);
-    let points = drives.par_iter().map(|drive| {
-        let points = drive.as_ref().map_or(Ok(Vec::new()), points);
+    let runs = drives.par_iter().map(|drive| {
+        let run = |drive| Ok((points(drive)?, Some(starts(drive)?)));
+        let runs = drive.as_ref().map_or(Ok((Vec::new(), None)), run);
         progress.advance(1);
-        points
+        runs
     });
-    let points = points.collect::<Result<Vec<_>, _>>()?;
-    let entries = motors.iter().zip(points);
-    Ok(entries
-        .map(|(motor, points)| entry(motor, &points))
-        .collect())
+    let runs = runs.collect::<Result<Vec<_>, LabError>>()?;
+    let entries = motors.iter().zip(runs);
+    let entries = entries.map(|(motor, (points, starts))| {
+        let entry = entry(motor, &points);
+        let fails = starts.is_some_and(|[all, reached]| reached < all);
+        LibraryMotor {
+            starts,
+            sampled_ripple_pct: sampled_ripple(motor),
+            is_right: entry.is_right && !fails,
+            limit: entry.limit.or(fails.then_some(Limit::Start)),
+            ..entry
+        }
+    });
+    Ok(entries.collect())
+}
+
+/// Starts of a drive, and those that reach rated speed.
+fn starts(drive: &Prepared) -> Result<[usize; 2], LabError> {
+    let all = FreeStart::all(drive)?;
+    let reached = all.iter().filter(|(start, _)| start.seconds.is_some());
+    Ok([all.len(), reached.count()])
+}
+
+/// Ripple that the generator tells of the default drive with Hall edges seen at samples only, percent.
+fn sampled_ripple(motor: &SelectedMotor) -> Option<f64> {
+    let variant = format!("{CONTROLLER}:hall_capture=sampled");
+    let drive = motor.prepare(Some(&variant)).ok()?;
+    drive.spec.sampled_ripple().map(|ripple| 100.0 * ripple)
 }
 
 fn points(drive: &Prepared) -> Result<Vec<RatedPoint>, LabError> {
@@ -291,6 +350,9 @@ fn entry(motor: &SelectedMotor, points: &[RatedPoint]) -> LibraryMotor {
         t_s: None,
         degrees_per_period: None,
         envelope_pct: None,
+        envelope_torque_nm: None,
+        starts: None,
+        sampled_ripple_pct: None,
         generates: false,
         reason: None,
         points: Vec::new(),
@@ -325,6 +387,7 @@ fn entry(motor: &SelectedMotor, points: &[RatedPoint]) -> LibraryMotor {
         envelope_pct: Envelope::of(&drive.spec)
             .speed(drive.demand())
             .map(|lasts| 100.0 * lasts / spec.rated_speed),
+        envelope_torque_nm: Some(Envelope::of(&drive.spec).torque(spec.rated_speed)),
         generates: true,
         is_right: !points.is_empty() && wrong.is_none(),
         limit: wrong.map(RatedPoint::limit),

@@ -48,7 +48,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.all {
         print_table(&all_columns(&motors))?;
         print_text(&paragraph(&format!(
-            "The default drive at rated torque and nominal bus voltage, by share of the rated speed: the worst of both directions, motoring and braking. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Limited by: - where the drive is right ({right})."
+            "The default drive at rated torque and nominal bus voltage, by share of the rated speed: the worst of both directions, motoring and braking. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Bus allows: torque at rated speed, up to that of the greatest set-point. Starts: those on a free shaft that reach rated speed, of the bare rotor, where its inertia is known, and of one with a load of a quarter of a second, from twelve angles each, in both directions. Sampled Halls: ripple at rated speed that the generator tells of where no timer captures the Hall edges. Limited by: - where the drive is right ({right})."
         )))?;
     } else {
         print_table(&table(&motors))?;
@@ -140,8 +140,11 @@ fn all_columns(motors: &[LibraryMotor]) -> Table {
             "rated rpm",
             "deg/Ts",
             "whole to %",
+            "bus allows Nm",
+            "starts",
             &torque,
             &ripple,
+            "sampled Halls %",
             "limited by",
         ],
     );
@@ -162,8 +165,13 @@ fn all_columns(motors: &[LibraryMotor]) -> Table {
             cell(motor.rated_rpm, 1.0),
             cell(motor.degrees_per_period, 1.0),
             cell(motor.envelope_pct, 1.0),
+            cell(motor.envelope_torque_nm, 1.0),
+            motor.starts.map_or("-".to_owned(), |[all, reached]| {
+                format!("{reached} of {all}")
+            }),
             points(|point| point.torque_pct),
             points(|point| point.ripple_pct),
+            tenths(motor.sampled_ripple_pct),
         ];
         table.row(cells.map(Cell::from).into_iter().chain([limit(motor)]));
     }
@@ -176,6 +184,7 @@ fn limit(motor: &LibraryMotor) -> Cell {
         _ if motor.is_right => ("-", Tone::None),
         Some(Limit::BusVoltage) => ("bus voltage", Tone::Slight),
         Some(Limit::ControlPeriod) => ("control period", Tone::Slight),
+        Some(Limit::Start) => ("start", Tone::Broken),
         Some(Limit::Trip) => ("trips", Tone::Broken),
         None => ("not generated", Tone::Broken),
     };

@@ -103,6 +103,9 @@ fn the_library_is_listed() {
     assert_eq!(number(paper, "emf_constant_v_s"), 0.0824);
     assert_eq!(paper["generates"], true);
     assert_eq!(paper["is_right"], true);
+    assert_eq!(paper["starts"], serde_json::json!([12, 12]));
+    assert!((number(paper, "envelope_torque_nm") / 3.63 - 1.0).abs() < 0.01);
+    assert!((number(paper, "sampled_ripple_pct") - 3.0).abs() < 0.1);
     let simulated = ["simulate", PAPER, "--controller", "pdcc", "--rpm", "2000"];
     let alone = run(simulated
         .iter()

@@ -7,7 +7,6 @@ use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor, prepare};
 use hexagen_lab::motors::{FreeStart, Limit, RatedPoint, SPEEDS, further, greatest_ripple};
 use hexagen_tests::random_motor::random_drives;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -48,7 +47,7 @@ fn is_physical(drive: &Prepared, speed: u32, limit: Limit) -> bool {
             // Or a period is as long as the current's rise.
             least > greatest_ripple(&drive.spec) || !can_be_right(&drive.spec)
         }
-        Limit::Trip => false,
+        Limit::Trip | Limit::Start => false,
     }
 }
 
@@ -121,24 +120,15 @@ impl<'d> Points<'d> {
     }
 }
 
-/// Seconds of a start with a load's inertia.
-const LOADED: f64 = 0.25;
-
-/// Start angles, every other one backward.
-const ANGLES: u32 = 12;
-
 /// Failed starts: of the bare rotor, where its inertia is known, and with a load.
 fn failed_starts(drive: &Prepared) -> Vec<String> {
-    let motor = &drive.spec.motor;
-    let load = LOADED * drive.demand() / motor.rated_speed;
-    let shafts = motor.inertia.into_iter().chain([load]);
-    let starts = shafts.flat_map(|inertia| (0..ANGLES).map(move |number| (inertia, number)));
-    let failed = starts.filter_map(|(inertia, number)| {
-        let angle = f64::from(number) * TAU / f64::from(ANGLES);
-        let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
-        let start = FreeStart::measure(drive, inertia, angle, sign).expect("runs");
-        let at = format!("{} {inertia:e} kg m2 {angle:.2} {sign}", drive.motor);
-        start.seconds.is_none().then(|| format!("{at}: {start:?}"))
+    let starts = FreeStart::all(drive).expect("runs").into_iter();
+    let failed = starts.filter(|(start, _)| start.seconds.is_none());
+    let failed = failed.map(|(start, [inertia, angle, sign])| {
+        format!(
+            "{} {inertia:e} kg m2 {angle:.2} {sign}: {start:?}",
+            drive.motor
+        )
     });
     failed.collect()
 }
