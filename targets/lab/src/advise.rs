@@ -775,6 +775,7 @@ mod tests {
                 },
             ],
             recommended: None,
+            pwm_per_control: None,
             reason: String::new(),
             ripples: None,
             far_off: Vec::new(),
