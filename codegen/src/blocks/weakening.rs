@@ -172,7 +172,7 @@ impl<'b> FieldWeakening<'b> {
         }
         let ([against], shift) = lifted([("against_lifted", against)]);
         named! {
-            // No shape that is accepted has a peak of so much per ampere of set-point.
+            // No likely shape has a reference with such a peak.
             let j_weak_most = largest_set_point(l, self.top) << 2;
             let across = shape.unit.map(|unit| against.mul_floor(unit, shift));
             let j_even = Phases([

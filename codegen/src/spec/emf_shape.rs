@@ -449,10 +449,15 @@ mod tests {
 
     /// A current turned for field weakening is up to 5 % greater, and limited at 4 times the set-point.
     #[test]
-    fn no_shape_that_is_accepted_has_a_peak_near_four() {
-        let amplitudes = || (-10..=10).map(|step| 0.05 * f64::from(step));
-        let series = amplitudes().flat_map(|fifth| {
-            amplitudes().map(move |seventh| Harmonics::of([(5, fifth, 0.0), (7, seventh, 0.0)]))
+    fn no_likely_shape_has_a_peak_near_four() {
+        let amplitudes = || (-6..=6).map(|step| 0.05 * f64::from(step));
+        let pairs = [(5, 7), (5, 11), (7, 11), (11, 13)];
+        let series = pairs.into_iter().flat_map(|(one, other)| {
+            let of_one = move |first: f64| {
+                amplitudes()
+                    .map(move |second| Harmonics::of([(one, first, 0.0), (other, second, 0.0)]))
+            };
+            amplitudes().flat_map(of_one)
         });
         let accepted = series.filter(|series| series.least_along() >= 0.5);
         let shapes = accepted.map(EmfShape::Harmonics);
@@ -460,7 +465,7 @@ mod tests {
             .filter(|shape| shape.steepness() <= 8.0)
             .map(EmfShape::proportional_peak);
         let most = peaks.fold(0.0, f64::max);
-        assert!((2.5..3.5).contains(&most), "{most}");
+        assert!((2.0..3.0).contains(&most), "{most}");
     }
 
     #[test]

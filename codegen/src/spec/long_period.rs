@@ -11,6 +11,12 @@ const TURN: f64 = 15.0;
 /// the mean of the current is not its sample, whatever the control does.
 const SWING: f64 = 5.0;
 
+/// Fewest counts of a PWM timer.
+const FEWEST_COUNTS: f64 = 100.0;
+
+/// Period of the greatest `f_pwm`, second.
+const SHORTEST: f64 = 2e-6;
+
 impl Spec {
     /// Turn of the rotor in a control period at rated speed, electrical degrees.
     pub fn degrees_per_period(&self) -> f64 {
@@ -23,50 +29,59 @@ impl Spec {
         rise / self.motor.rated_current
     }
 
-    /// A clause on a control period that is too long for the motor; none where it is not. Of both limits the one that
-    /// is missed by more.
-    pub fn long_period(&self) -> Option<String> {
-        let [turn, swing] = [self.degrees_per_period() / TURN, self.swing() / SWING];
-        if turn > 1.0 && turn >= swing {
-            return Some(self.far_turn(turn));
-        }
-        (swing > 1.0).then(|| {
-            let least = two_digits(swing / self.inverter.pwm_period(), f64::ceil);
-            format!(
-                "a PWM period changes the current by {} times the rated one: use `f_pwm` of at least {}",
-                two_digits(swing * SWING, f64::round),
-                engineering(least, "Hz"),
-            )
-        })
+    /// The shortest PWM period of this inverter, second: 100 counts of its timer, and 500 kHz at most.
+    fn shortest_pwm_period(&self) -> f64 {
+        let counts = f64::from(self.inverter.timer_period);
+        (self.inverter.pwm_period() * FEWEST_COUNTS / counts).max(SHORTEST)
     }
 
-    /// A rotor that turns too far by the factor `excess`. Its remedy: fewer PWM periods in a control period, if it has
-    /// several, or else a PWM frequency.
-    fn far_turn(&self, excess: f64) -> String {
-        let degrees = self.degrees_per_period();
-        let per_control = f64::from(self.inverter.pwm_per_control);
-        let fewer = (per_control / excess).floor();
-        let remedy = if fewer >= 1.0 {
-            let then = two_digits(degrees * fewer / per_control, f64::round);
-            format!("lower `pwm_per_control` to {fewer} ({then} degrees)")
-        } else {
-            let f_pwm = two_digits(excess / self.inverter.t_s, f64::ceil);
-            let of_each = if per_control > 1.0 {
-                " and `pwm_per_control` of 1"
+    /// A clause on a control period that is too long for the motor; none where it is not. Of both limits the one that
+    /// is missed by more. Its remedy is a period, as `f_pwm` and `sampling_time` both state one.
+    pub fn long_period(&self) -> Option<String> {
+        let [turn, swing] = [self.degrees_per_period() / TURN, self.swing() / SWING];
+        let shortest = self.shortest_pwm_period();
+        if turn > 1.0 && turn >= swing {
+            let degrees = self.degrees_per_period();
+            let most = self.inverter.t_s / turn;
+            let remedy = if most < shortest * f64::from(self.inverter.pwm_per_control) {
+                "none of this inverter is short enough: lower `rated_speed`".to_owned()
             } else {
-                ""
+                let per_control = self.inverter.pwm_per_control;
+                let fewer = match per_control {
+                    1 => "",
+                    _ => ", or with a stated `f_pwm` a lower `pwm_per_control`",
+                };
+                format!(
+                    "use one of at most {}{fewer}",
+                    with_frequency(most, per_control)
+                )
             };
-            let (least, period) = (engineering(f_pwm, "Hz"), at_most(1.0 / f_pwm));
-            format!(
-                "use `f_pwm` of at least {least}{of_each} ({})",
-                engineering(period, "s")
-            )
-        };
-        format!(
-            "at rated speed the rotor turns {} electrical degrees in a control period: {remedy}",
-            two_digits(degrees, f64::round)
-        )
+            return Some(format!(
+                "at rated speed the rotor turns {degrees:.1} electrical degrees in a control period: {remedy}"
+            ));
+        }
+        (swing > 1.0).then(|| {
+            let times = two_digits(swing * SWING, f64::round);
+            let most = self.inverter.pwm_period() / swing;
+            let remedy = if most < shortest {
+                "none of this inverter is short enough: lower `bus_voltage`, or add inductance in the phases".to_owned()
+            } else {
+                format!("use one of at most {}", with_frequency(most, 1))
+            };
+            format!("a PWM period changes the current by {times} times the rated one: {remedy}")
+        })
     }
+}
+
+/// A greatest period of so many PWM periods, second, with their frequency, both so that they are accepted when typed in.
+fn with_frequency(period: f64, of_pwm: u32) -> String {
+    let of_pwm = f64::from(of_pwm);
+    let frequency = two_digits(of_pwm / period, f64::ceil);
+    format!(
+        "{} (`f_pwm` of at least {})",
+        engineering(at_most(of_pwm / frequency), "s"),
+        engineering(frequency, "Hz")
+    )
 }
 
 /// A number of two digits near to this one.

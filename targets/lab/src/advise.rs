@@ -269,7 +269,7 @@ fn with_periods(motor: &SelectedMotor, per_control: u32) -> SelectedMotor {
 /// PWM periods in a control period that give a step of the default drive the time; none where they would be too many.
 fn periods_needed(motor: &SelectedMotor) -> Option<u32> {
     (2..=MOST_PER_CONTROL).find(|&periods| {
-        let drive = with_periods(motor, periods).prepare(Some(DEFAULT));
+        let drive = prepare_variant(&with_periods(motor, periods), DEFAULT);
         let time = drive
             .as_ref()
             .ok()
@@ -320,8 +320,8 @@ fn advise_as_stated(motor: &SelectedMotor, progress: &dyn Progress) -> Result<Ad
     }
     if advice.tried.first().is_some_and(|default| default.overruns) {
         advice.reason.push_str(
-            "; a step of the default drive may take longer than the control period: a lower `f_pwm`, or more PWM periods in a \
-             control period (`pwm_per_control`), give it the time",
+            "; a step of the default drive may take longer than the control period: a longer one, by a lower `f_pwm`, more PWM periods in \
+             it (`pwm_per_control`) or a longer `sampling_time`, gives it the time",
         );
     }
     if advice.recommended.is_none()
@@ -418,25 +418,22 @@ fn left_out(motor: &SelectedMotor) -> Vec<String> {
     names.map(str::to_owned).collect()
 }
 
+/// A variant of a motor, without the options of its file but for those that stay.
+fn prepare_variant(motor: &SelectedMotor, variant: &str) -> Result<Prepared, LabError> {
+    let mut drive = motor.clone();
+    drive.ast.controller.fields.clear();
+    apply_variant(&mut drive.ast, variant)?;
+    // A controller of another kind would replace these, too.
+    drive.ast.controller.fields.extend(kept(motor).cloned());
+    drive.prepare_for_torque(None)
+}
+
 /// All variants of a motor.
 ///
 /// # Errors
 /// If none is generated: the reason of the default.
 fn prepare(motor: &SelectedMotor) -> Result<Vec<Drive>, LabError> {
-    let mut plain = motor.clone();
-    plain.ast.controller.fields.clear();
-    let drives = VARIANTS.map(|variant| {
-        let mut drive = plain.clone();
-        // A controller of another kind would replace these, too.
-        let applied = apply_variant(&mut drive.ast, variant);
-        drive.ast.controller.fields.extend(kept(motor).cloned());
-        let prepared = match applied {
-            Ok(()) => drive.prepare_for_torque(None),
-            Err(errors) => Err(errors.into()),
-        };
-        (variant, prepared)
-    });
-    let mut drives = Vec::from(drives);
+    let mut drives = Vec::from(VARIANTS.map(|variant| (variant, prepare_variant(motor, variant))));
     let controller = &motor.ast.controller;
     if controller.fields.iter().any(|field| field.name != "kind") {
         drives.push((OWN, motor.prepare_for_torque(None)));

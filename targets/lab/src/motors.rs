@@ -65,7 +65,7 @@ pub struct LibraryMotor {
     /// Starts of the default drive on a free shaft, and those of them that reach rated speed ([`FreeStart::all`]).
     pub starts: Option<[usize; 2]>,
     /// Ripple at rated speed if Hall edges were seen at samples only, the generator's estimate, percent; none without
-    /// Hall sensors.
+    /// Hall sensors, or where the file's controller does not follow the angle.
     pub sampled_ripple_pct: Option<f64>,
     /// Whether the controller of its file can be generated.
     pub generates: bool,
@@ -304,7 +304,7 @@ pub fn library_at_rating(progress: &dyn Progress) -> Result<Vec<LibraryMotor>, L
     let entries = motors.iter().zip(runs);
     let entries = entries.map(|(motor, (points, starts))| {
         let entry = entry(motor, &points);
-        let fails = starts.is_some_and(|[all, reached]| reached < all);
+        let fails = starts.is_some_and(|[all, reached]| entry.generates && reached < all);
         LibraryMotor {
             starts,
             sampled_ripple_pct: sampled_ripple(motor),

@@ -110,7 +110,8 @@ pub fn check(ast: &SpecAst) -> Result<(Spec, Origins), Diagnostics> {
             };
             trips::check(&inverter_reader, &motor, &spec, &mut warnings);
             if let Some(period) = period {
-                ripple::check(&inverter_reader, period, &spec, &mut warnings);
+                let reader = &inverter_reader;
+                ripple::check(reader, &whole_controller, period, &spec, &mut warnings);
             }
             let origins = Origins::new(ast, &whole_inverter, &whole_controller, warnings);
             errors.into_result((spec, origins))

@@ -3,6 +3,7 @@
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::catalogue;
 use crate::diagnostics::catalogue::Part;
+use crate::spec::ast::Section;
 use crate::spec::controller::common::FELT_DEAD_TIME;
 use crate::spec::reader::Reader;
 use crate::spec::{MOST_RIPPLE, Spec};
@@ -10,13 +11,24 @@ use crate::spec::{MOST_RIPPLE, Spec};
 /// A dead time as many inverters have it, second: the median of the board library.
 const USUAL_DEAD_TIME: f64 = 500e-9;
 
-/// `period`: the field that states the control period.
-pub(super) fn check(inverter: &Reader, period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
+/// `options`: those of the controller; `period`: the field that states the control period.
+pub(super) fn check(
+    inverter: &Reader,
+    options: &Section,
+    period: &Part,
+    spec: &Spec,
+    warnings: &mut Vec<Diagnostic>,
+) {
     check_sampled_halls(period, spec, warnings);
-    if let Some(clause) = spec.long_period() {
+    // What whole vectors need is told with them.
+    let clause = spec.long_period();
+    if let Some(clause) = clause.filter(|_| spec.controller.modulates()) {
         warnings.push(catalogue::long_control_period(period, &clause));
     }
-    check_dead_time(inverter, spec, warnings);
+    // Without compensation a stated dead time would change nothing.
+    if options.field("dead_time_compensation").is_none() {
+        check_dead_time(inverter, spec, warnings);
+    }
 }
 
 /// Hall edges that are seen at samples only.

@@ -48,7 +48,7 @@ pub fn run(options: &Options) -> Result<(), Failure> {
     if options.all {
         print_table(&all_columns(&motors))?;
         print_text(&paragraph(&format!(
-            "The default drive at rated torque and nominal bus voltage, by share of the rated speed: the worst of both directions, motoring and braking. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Bus allows: torque at rated speed, up to that of the greatest set-point. Starts: those on a free shaft that reach rated speed, of the bare rotor, where its inertia is known, and of one with a load of a quarter of a second, from twelve angles each, in both directions. Sampled Halls: ripple at rated speed that the generator tells of where no timer captures the Hall edges. Limited by: - where the drive is right ({right})."
+            "The default drive at rated torque and nominal bus voltage, by share of the rated speed: the worst of both directions, motoring and braking. Deg/Ts: electrical degrees in a control period at rated speed. Whole to: speed up to which the bus drives the rating's whole current. Bus allows: torque at rated speed, up to that of the greatest set-point. Starts: those on a free shaft that reach rated speed, of the bare rotor, where its inertia is known, and of one that the rated torque takes to rated speed in a quarter of a second, from twelve angles each, in both directions. Sampled Halls: ripple at rated speed that the generator tells of where no timer captures the Hall edges. Limited by: - where the drive is right ({right})."
         )))?;
     } else {
         print_table(&table(&motors))?;

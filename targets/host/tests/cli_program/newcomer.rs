@@ -177,6 +177,10 @@ fn a_slow_core_is_given_the_time_for_a_good_drive() {
         let ripple = run["ripple_pct"].as_f64().expect("a ripple");
         assert!(ripple < 3.0, "{run}");
     }
+    let other = text.replace("\"pdcc\"", "\"pi-pwm\"");
+    assert_ne!(other, text);
+    let advice = on_file("advise", &other, &["--json"]).json();
+    assert_eq!(advice["pwm_per_control"], 3, "{advice}");
     let told = on_file("advise", &text, &[]).stdout;
     let lines = "\nIn the motor file:\n  [inverter]\n  pwm_per_control = 3\n";
     assert!(told.contains(lines), "{told}");
@@ -476,7 +480,7 @@ fn check_names_the_frequency_that_makes_the_period_short_enough() {
         judgement["verdict"].as_str().expect("a text").to_owned()
     };
     let verdict = verdict_at("2.5 kHz");
-    let told = "the rotor turns 23 electrical degrees in a control period: use `f_pwm` of at least 3.9 kHz (256.4 us)";
+    let told = "the rotor turns 23.1 electrical degrees in a control period: use one of at most 256.4 us (`f_pwm` of at least 3.9 kHz)";
     assert!(verdict.contains(told), "{verdict}");
     let finer = verdict_at("3.9 kHz");
     assert!(finer.starts_with("works"), "{finer}");
@@ -485,7 +489,7 @@ fn check_names_the_frequency_that_makes_the_period_short_enough() {
 #[test]
 fn check_names_the_frequency_that_suits_the_inductance() {
     let said = run(["check", "br2804-1700kv"]);
-    let told = "warning[HX0625]: `f_pwm`: 40 kHz: a PWM period changes the current by 6.9 times the rated one: use `f_pwm` of at least 56 kHz";
+    let told = "warning[HX0625]: `f_pwm`: 40 kHz: a PWM period changes the current by 6.9 times the rated one: use one of at most 17.85 us (`f_pwm` of at least 56 kHz)";
     assert!(said.stderr.contains(told), "{said:?}");
 }
 

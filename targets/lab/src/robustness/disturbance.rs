@@ -7,8 +7,8 @@ use hexagen_codegen::spec::{InverterSpec, RotorSensing};
 /// A plant option.
 type Scale = fn(&mut PlantOptions) -> &mut Option<f64>;
 
-/// Parameters of the motor, each with the option that scales it, and by how much: copper has twice the resistance at
-/// about 270 degrees, and a data sheet's may be of another temperature or without leads; iron saturates.
+/// Parameters of the motor, each with the option that scales it, and by how much: a data sheet's resistance may
+/// be of another temperature, basis or without leads, and iron saturates.
 const SCALES: [(&str, Scale, [f64; 2]); 3] = [
     ("R", |plant| &mut plant.scale_r, [0.5, 2.0]),
     ("L", |plant| &mut plant.scale_l, [0.75, 1.3]),
