@@ -480,7 +480,7 @@ fn check_names_the_frequency_that_makes_the_period_short_enough() {
         judgement["verdict"].as_str().expect("a text").to_owned()
     };
     let verdict = verdict_at("2.5 kHz");
-    let told = "the rotor turns 23.1 electrical degrees in a control period: use one of at most 256.4 us (`f_pwm` of at least 3.9 kHz)";
+    let told = "the rotor turns 23.0 electrical degrees in a control period: use one of at most 256.4 us (`f_pwm` of at least 3.9 kHz)";
     assert!(verdict.contains(told), "{verdict}");
     let finer = verdict_at("3.9 kHz");
     assert!(finer.starts_with("works"), "{finer}");
