@@ -1,6 +1,7 @@
 //! A control period that is too long for the motor, and the remedy.
 
 use super::Spec;
+use super::check::FEWEST_COUNTS;
 use crate::diagnostics::{at_most, engineering};
 
 /// Electrical degrees in a control period at rated speed, up to which a drive is right.
@@ -10,9 +11,6 @@ const TURN: f64 = 15.0;
 /// up to which a drive is right. Beyond it the pulses' ripple is so large, and decays so fast, that
 /// the mean of the current is not its sample, whatever the control does.
 const SWING: f64 = 5.0;
-
-/// Fewest counts of a PWM timer.
-const FEWEST_COUNTS: f64 = 100.0;
 
 /// Period of the greatest `f_pwm`, second.
 const SHORTEST: f64 = 2e-6;

@@ -36,6 +36,13 @@ impl Spec {
         })
     }
 
+    /// The same where it is told of: where it is more than [`MOST_RIPPLE`] in full percent, as the estimate is good to a
+    /// tenth.
+    pub fn told_sampled_ripple(&self) -> Option<f64> {
+        let is_told = |ripple: &f64| (100.0 * ripple).round() > 100.0 * MOST_RIPPLE;
+        self.sampled_ripple().filter(is_told)
+    }
+
     /// Change of the current in a control period with the EMF of the rated speed across a phase, over the rated current.
     fn coarseness(&self) -> f64 {
         let motor = &self.motor;

@@ -363,8 +363,8 @@ pub fn adc_offset(offset: &Part, full: u32) -> Diagnostic {
 }
 
 /// The window in which a leg must be low to be sampled takes too much of the PWM period. `leads`: it is sampled before
-/// the turning point; `needed`: before and behind that, second; `most`: what either may take, second, and the least duty that it leaves; `f_pwm`: the
-/// greatest PWM frequency that leaves so much, hertz.
+/// the turning point; `before` and `after`: of that, second; `most`: what either may take, second, and the least duty
+/// that it leaves; `f_pwm`: the greatest PWM frequency that leaves so much, hertz.
 pub fn sensing_window(
     parts: &[Part],
     (period, leads): (&Part, bool),

@@ -440,8 +440,8 @@ pub fn unlikely_inertia(inertia: &Part, torque: f64, time: f64, likely: [f64; 2]
     )
 }
 
-/// A rotor that turns by `degrees` in a control period, at whose end a Hall edge is seen; `ripple`: the greatest of the torque, over its
-/// mean.
+/// A rotor that turns by `degrees` in a control period, at whose end a Hall edge is seen; `ripple`: the greatest of the
+/// torque, over its mean.
 pub fn sampled_halls(period: &Part, degrees: f64, ripple: f64) -> Diagnostic {
     Diagnostic::new(
         Code::SampledHalls,

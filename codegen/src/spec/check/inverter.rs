@@ -274,6 +274,9 @@ fn trip_level(given: Option<Given>, usual: f64, check: impl FnOnce(&Given, bool)
     })
 }
 
+/// Fewest counts of a PWM timer.
+pub const FEWEST_COUNTS: f64 = 100.0;
+
 /// Counts of the centre-aligned timer, clock/(2 f_pwm) rounded, and its control period,
 /// 2 counts/clock per PWM period: within 0.5 % of the stated one from 100 counts on. Where counts
 /// are given in place of the clock, the period is the stated one.
@@ -298,7 +301,7 @@ fn read_timer(
     };
     let counts = clock.si * asked / per_control / 2.0;
     // Decimal units may round the limits.
-    if !(100.0 - 1e-6..=65535.0 + 1e-6).contains(&counts) {
+    if !(FEWEST_COUNTS - 1e-6..=65535.0 + 1e-6).contains(&counts) {
         errors.push(catalogue::timer_period(
             &clock.part,
             &period.part,

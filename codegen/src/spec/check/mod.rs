@@ -20,6 +20,7 @@ mod sensing_window;
 mod trips;
 mod whole_inverter;
 
+pub(super) use inverter::FEWEST_COUNTS;
 pub use origins::{Origin, Origins};
 
 use self::inverter::Inverter;

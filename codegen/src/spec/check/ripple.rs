@@ -3,10 +3,10 @@
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::catalogue;
 use crate::diagnostics::catalogue::Part;
+use crate::spec::Spec;
 use crate::spec::ast::Section;
 use crate::spec::controller::common::FELT_DEAD_TIME;
 use crate::spec::reader::Reader;
-use crate::spec::{MOST_RIPPLE, Spec};
 
 /// A dead time as many inverters have it, second: the median of the board library.
 const USUAL_DEAD_TIME: f64 = 500e-9;
@@ -19,7 +19,10 @@ pub(super) fn check(
     spec: &Spec,
     warnings: &mut Vec<Diagnostic>,
 ) {
-    check_sampled_halls(period, spec, warnings);
+    if let Some(ripple) = spec.told_sampled_ripple() {
+        let degrees = spec.degrees_per_period();
+        warnings.push(catalogue::sampled_halls(period, degrees, ripple));
+    }
     // What whole vectors need is told with them.
     let clause = spec.long_period();
     if let Some(clause) = clause.filter(|_| spec.controller.modulates()) {
@@ -29,22 +32,6 @@ pub(super) fn check(
     if options.field("dead_time_compensation").is_none() {
         check_dead_time(inverter, spec, warnings);
     }
-}
-
-/// Hall edges that are seen at samples only.
-fn check_sampled_halls(period: &Part, spec: &Spec, warnings: &mut Vec<Diagnostic>) {
-    let Some(ripple) = spec.sampled_ripple() else {
-        return;
-    };
-    // In full percent, as it is told: it is an estimate, good to a tenth.
-    if (100.0 * ripple).round() <= 100.0 * MOST_RIPPLE {
-        return;
-    }
-    warnings.push(catalogue::sampled_halls(
-        period,
-        spec.degrees_per_period(),
-        ripple,
-    ));
 }
 
 /// A dead time that is not stated, and of which a usual one would be compensated.

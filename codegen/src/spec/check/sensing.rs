@@ -54,11 +54,11 @@ const LEAD: &str = "sampling_lead";
 /// dead time delays.
 const FELT_DELAY: f64 = 0.005;
 
-/// The sampling instant of sensors in the low legs, which depends on motor and controller. The mean of all conversions
-/// comes half the dead time behind the turning point, in the middle of the pulses, where the current moves too far until
-/// then; the timer's update makes no such trigger, so it is at the turning point elsewhere. A command without computation
-/// delay acts from there on, and so does one that turns a leg off; and what is not readable for longer behind the
-/// turning point than before it costs no voltage of two sensed legs.
+/// The sampling instant of sensors in the low legs, which depends on motor and controller. By default it is the turning
+/// point, at which the timer's update triggers. Where the current moves too far until the middle of the delayed pulses,
+/// it is so much later that the mean of all conversions comes there. It stays at the turning point for a command
+/// without computation delay, which acts from there on; for a leg that is turned off, which has to be read before that;
+/// and where the window would become longer behind the turning point than before it, which would take voltage.
 pub(super) fn place_instant(
     reader: &Reader,
     inverter: &mut Inverter,

@@ -1,7 +1,7 @@
 //! Hall edges that are seen at samples only: the ripple in the generator's warning against that of simulated runs.
 
 use crate::defaults::{envelope, set_aside};
-use hexagen_codegen::spec::{MOST_RIPPLE, RotorSensing};
+use hexagen_codegen::spec::RotorSensing;
 use hexagen_lab::engine::{PlantOptions, Prepared, SelectedMotor};
 use hexagen_lab::motors::{QUADRANTS, TORQUE};
 use rayon::prelude::*;
@@ -74,7 +74,7 @@ fn check(motors: &[SelectedMotor]) -> usize {
             );
             let beyond = BEYOND[usize::from(stated > LARGE)];
             // Nothing to be told of.
-            let is_smooth = stated.round() <= 100.0 * MOST_RIPPLE;
+            let is_smooth = drive.spec.told_sampled_ripple().is_none();
             let is_right = ripple <= beyond * stated + FLOOR
                 && stated <= SHORT * ripple + FLOOR
                 && (!is_smooth || (torque - 1.0).abs() <= TORQUE / 100.0);
